@@ -1,0 +1,47 @@
+"""What every stage hands on: typed, frozen, and written as canonical JSON.
+
+An artefact is a frozen dataclass. Its JSON form is canonical (keys in the order of the class, floats in
+Python's shortest form, two-space indent, one newline at the end), so equal artefacts are equal bytes and
+the checksum of a stage is the SHA-256 of those bytes.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from pathlib import Path
+from typing import Any, TypeVar
+
+import msgspec
+
+T = TypeVar("T")
+
+
+def to_json(artefact: Any) -> bytes:
+    """Canonical JSON bytes of a dataclass, list or dict artefact."""
+    return msgspec.json.format(msgspec.json.encode(artefact), indent=2) + b"\n"
+
+
+def from_json(data: bytes, kind: type[T]) -> T:
+    """Decode and validate ``data`` as ``kind``.
+
+    Raises:
+        msgspec.ValidationError: the JSON does not have the shape of ``kind``.
+        msgspec.DecodeError: the bytes are not JSON.
+    """
+    return msgspec.json.decode(data, type=kind)
+
+
+def checksum(data: bytes) -> str:
+    """SHA-256 of ``data`` in hexadecimal."""
+    return hashlib.sha256(data).hexdigest()
+
+
+def write_atomic(path: Path, data: bytes) -> None:
+    """Write beside ``path`` and rename, so that a reader sees the old file or the new one, never a part."""
+    partial = path.with_name(path.name + ".partial")
+    with open(partial, "wb") as stream:
+        stream.write(data)
+        stream.flush()
+        os.fsync(stream.fileno())
+    os.replace(partial, path)
