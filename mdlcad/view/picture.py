@@ -1,0 +1,65 @@
+"""Pictures of the real bodies with PyVista, without a screen."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import pyvista
+from numpy.typing import NDArray
+
+from mdlcad.export.solid import prism, triangles
+from mdlcad.parts.body import Body
+
+_WINDOW = (1600, 1200)
+
+
+def device_mesh(bodies: Sequence[Body], lift_mm: dict[str, float] | None = None) -> pyvista.PolyData:
+    """One mesh of all bodies as assembled, with cell colours "rgb" (uint8, (cells, 3)).
+
+    Args:
+        lift_mm: how far each plate is lifted in z (an exploded view).
+    """
+    lifts = lift_mm or {}
+    points: list[NDArray[np.float64]] = []
+    faces: list[NDArray[np.int64]] = []
+    colours: list[NDArray[np.uint8]] = []
+    offset = 0
+    for body in bodies:
+        section = body.assembled if body.assembled is not None else body.section
+        vertices, corners = triangles(prism([section], body.z + lifts.get(body.plate, 0.0), body.thickness))
+        points.append(vertices)
+        faces.append(np.column_stack([np.full(len(corners), 3, dtype=np.int64), corners + offset]))
+        colours.append(np.tile(_rgb(body.colour), (len(corners), 1)))
+        offset += len(vertices)
+    mesh = pyvista.PolyData(np.concatenate(points), np.concatenate(faces).ravel())
+    mesh.cell_data["rgb"] = np.concatenate(colours)
+    return mesh
+
+
+def _rgb(colour: str) -> NDArray[np.uint8]:
+    return np.array([int(colour[start : start + 2], 16) for start in (1, 3, 5)], dtype=np.uint8)
+
+
+def write_picture(
+    bodies: Sequence[Body], path: Path, *, from_above: bool, lift_mm: dict[str, float] | None = None
+) -> None:
+    """Render ``bodies`` to a PNG: from above (parallel, to scale) or from a raised corner."""
+    plotter = pyvista.Plotter(off_screen=True, window_size=list(_WINDOW))
+    plotter.set_background("white")
+    plotter.add_mesh(
+        device_mesh(bodies, lift_mm), scalars="rgb", rgb=True, smooth_shading=False, specular=0.1, ambient=0.25
+    )
+    plotter.enable_anti_aliasing("ssaa")
+    if from_above:
+        plotter.view_xy()
+        plotter.enable_parallel_projection()
+        plotter.camera.zoom(1.3)
+    else:
+        plotter.camera_position = "iso"
+        plotter.camera.azimuth = -15.0
+        plotter.camera.elevation = 5.0
+        plotter.camera.zoom(1.3)
+    plotter.screenshot(str(path))
+    plotter.close()
