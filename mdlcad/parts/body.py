@@ -40,6 +40,8 @@ class Body:
             x), "frame". A rigid body has one, a flexure has the two or three that it joins. Bodies that share one
             are not checked against each other's motion, only against overlap.
         colour: "#rrggbb".
+        envelope: the region that a flexure covers over its motion, where that is less than its section swept by
+            ``throw`` (its anchors stand still); None for rigid bodies, whose swept section is exact.
     """
 
     name: str
@@ -52,3 +54,4 @@ class Body:
     moves_with: tuple[str, ...]
     colour: str
     assembled: Polygon | None = None
+    envelope: Polygon | None = None

@@ -1,0 +1,177 @@
+"""Layout versus schematic: the connections recovered from geometry alone, held against the network.
+
+Only the names of units are taken from the file (they pin the two graphs to each other; without them permuted twins
+would match). Everything else, which carrier is pinned to which shuttle, which coupler joins which, which coupler is a
+rocker, follows from bodies that touch.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import networkx as nx
+import shapely
+
+from mdlcad.network.model import Network
+from mdlcad.signoff.readback import ReadBody
+
+# Two bodies that come this close are in contact; far above rounding, far below any clearance.
+CONTACT_MM = 2e-3
+
+
+@dataclass(frozen=True, slots=True)
+class Connection:
+    """A coupling found in the geometry, from a unit's carrier to another unit's shuttle; negative if it is a rocker."""
+
+    source: str
+    target: str
+    negative: bool
+
+
+@dataclass(frozen=True, slots=True)
+class LvsResult:
+    """Differences between geometry and network, in words; ``matched`` if there are none and something was compared."""
+
+    matched: bool
+    units: int
+    connections: int
+    biases: int
+    differences: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Recovered:
+    """What the geometry is: units by name, connections, biased units, and what could not be understood."""
+
+    units: tuple[str, ...]
+    connections: tuple[Connection, ...]
+    biased: tuple[str, ...]
+    problems: tuple[str, ...]
+
+
+def contacts(bodies: Sequence[ReadBody]) -> list[tuple[int, int]]:
+    """Pairs of bodies that touch: sections within CONTACT_MM where their extents in z overlap."""
+    tree = shapely.STRtree([body.section for body in bodies])
+    left, right = tree.query([body.section for body in bodies], predicate="dwithin", distance=CONTACT_MM)
+    pairs = []
+    for a, b in sorted(zip(left.tolist(), right.tolist(), strict=True)):
+        if a < b and _overlap_in_z(bodies[a], bodies[b]):
+            pairs.append((a, b))
+    return pairs
+
+
+def _overlap_in_z(a: ReadBody, b: ReadBody) -> bool:
+    return min(a.z + a.thickness, b.z + b.thickness) - max(a.z, b.z) > 1e-6
+
+
+def _kind(name: str) -> str:
+    return name.partition(".")[0]
+
+
+_RIGID = ("rung", "trunk", "tab", "pin")
+_FLEXURES = ("coupler", "rocker", "bias")
+
+
+def recover(bodies: Sequence[ReadBody]) -> Recovered:
+    """Units, connections and biases from contacts between bodies."""
+    pairs = contacts(bodies)
+    kinds = [_kind(body.name) for body in bodies]
+    rigid = nx.Graph()
+    rigid.add_nodes_from(index for index, kind in enumerate(kinds) if kind in _RIGID)
+    rigid.add_edges_from((a, b) for a, b in pairs if kinds[a] in _RIGID and kinds[b] in _RIGID)
+    group = {index: number for number, part in enumerate(nx.connected_components(rigid)) for index in part}
+    problems: list[str] = []
+    owner: dict[int, set[str]] = {}
+    clock_groups: set[int] = set()
+    for a, b in pairs:
+        for one, other in ((a, b), (b, a)):
+            if kinds[one] in _RIGID and kinds[other] == "unit" and not bodies[one].name.startswith("pin.clock."):
+                owner.setdefault(group[one], set()).add(bodies[other].name.removeprefix("unit."))
+            if kinds[one] == "pin" and bodies[one].name.startswith("pin.clock."):
+                clock_groups.add(group[one])
+    for _, joined in sorted(owner.items()):
+        if len(joined) > 1:
+            problems.append(f"short: the shuttles of {', '.join(sorted(joined))} are joined by one carrier")
+    shuttle = {number: min(joined) for number, joined in owner.items()}
+    for number in sorted(set(group.values()) - set(shuttle) - clock_groups):
+        names = sorted(bodies[index].name for index, part in group.items() if part == number)
+        problems.append(f"loose: {names[0]} and {len(names) - 1} more bodies are pinned to no shuttle")
+    connections, biased = _flexures(bodies, pairs, kinds, group, shuttle, problems)
+    units = tuple(
+        sorted(body.name.removeprefix("unit.") for body, kind in zip(bodies, kinds, strict=True) if kind == "unit")
+    )
+    return Recovered(units, tuple(connections), tuple(sorted(biased)), tuple(problems))
+
+
+def _flexures(
+    bodies: Sequence[ReadBody],
+    pairs: list[tuple[int, int]],
+    kinds: list[str],
+    group: dict[int, int],
+    shuttle: dict[int, str],
+    problems: list[str],
+) -> tuple[list[Connection], list[str]]:
+    touching: dict[int, list[int]] = {index: [] for index, kind in enumerate(kinds) if kind in _FLEXURES}
+    for a, b in pairs:
+        if a in touching:
+            touching[a].append(b)
+        if b in touching:
+            touching[b].append(a)
+    connections, biased = [], []
+    for index, others in touching.items():
+        bars = {shuttle.get(group[o], "?") for o in others if kinds[o] in ("rung", "trunk", "tab")}
+        hubs = {shuttle.get(group[o], "?") for o in others if kinds[o] == "pin"}
+        posts = sum(kinds[o] == "post" for o in others)
+        name = bodies[index].name
+        if len(hubs) != 1 or len(bars) > 1 or (not bars and posts != 1) or posts > 1:
+            problems.append(
+                f"open: {name} touches carriers of {sorted(bars)}, shuttles of {sorted(hubs)}, {posts} posts"
+            )
+        elif bars:
+            connections.append(Connection(bars.pop(), hubs.pop(), negative=posts == 1))
+        else:
+            biased.append(hubs.pop())
+    connections.sort(key=lambda item: (item.source, item.target))
+    return connections, biased
+
+
+def compare(recovered: Recovered, network: Network) -> LvsResult:
+    """Hold what the geometry is against what the network says."""
+    differences = list(recovered.problems)
+    wanted_units = {mass.name for mass in network.masses}
+    differences += [f"unit missing: {name}" for name in sorted(wanted_units - set(recovered.units))]
+    differences += [f"unit not in the network: {name}" for name in sorted(set(recovered.units) - wanted_units)]
+    wanted = sorted((c.source, c.target, c.strength < 0) for c in network.couplings)
+    found = sorted((c.source, c.target, c.negative) for c in recovered.connections)
+    differences += [f"coupling missing: {_words(item)}" for item in _minus(wanted, found)]
+    differences += [f"coupling not in the network: {_words(item)}" for item in _minus(found, wanted)]
+    wanted_biases = sorted(mass.name for mass in network.masses if mass.bias)
+    differences += [f"bias missing: {name}" for name in _minus(wanted_biases, list(recovered.biased))]
+    differences += [f"bias not in the network: {name}" for name in _minus(list(recovered.biased), wanted_biases)]
+    compared = len(recovered.units) + len(recovered.connections)
+    if not compared:
+        differences.append("nothing to compare: no units and no couplings were found in the geometry")
+    return LvsResult(
+        matched=not differences,
+        units=len(recovered.units),
+        connections=len(recovered.connections),
+        biases=len(recovered.biased),
+        differences=tuple(differences),
+    )
+
+
+def _words(item: tuple[str, str, bool]) -> str:
+    return f"{item[0]}->{item[1]} ({'negative' if item[2] else 'positive'})"
+
+
+def _minus(left: list, right: list) -> list:  # type: ignore[type-arg]
+    """Multiset difference, in order."""
+    rest = list(right)
+    missing = []
+    for item in left:
+        if item in rest:
+            rest.remove(item)
+        else:
+            missing.append(item)
+    return missing

@@ -1,0 +1,73 @@
+"""Bodies read back from a written STEP file: the geometry as another program would see it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import cadquery as cq
+from shapely import Polygon
+
+from mdlcad.errors import UsageError
+
+
+@dataclass(frozen=True, slots=True)
+class ReadBody:
+    """A prism found in a file: its name there, its section in the x-y plane, its extent in z and volume, in mm."""
+
+    name: str
+    section: Polygon
+    z: float
+    thickness: float
+    volume: float
+
+
+def read_step(path: Path) -> tuple[ReadBody, ...]:
+    """All solids of the STEP assembly at ``path``, with the section taken from each solid's lowest face.
+
+    Raises:
+        UsageError: the file cannot be read, or holds a solid that is not one prism along z.
+    """
+    try:
+        assembly = cq.Assembly.importStep(str(path))
+    except (ValueError, RuntimeError, OSError) as problem:
+        raise UsageError(f"{path.name}: not a readable STEP assembly: {problem}") from problem
+    found: list[ReadBody] = []
+    for shape, name, location, _colour in assembly:
+        placed = shape.moved(location)
+        found.extend(_read_solid(path, name.rpartition("/")[2], solid) for solid in placed.Solids())
+    if not found:
+        raise UsageError(f"{path.name}: holds no solid")
+    return tuple(found)
+
+
+def _read_solid(path: Path, name: str, solid: Any) -> ReadBody:
+    box = solid.BoundingBox()
+    bottoms = [
+        face
+        for face in solid.Faces()
+        if face.geomType() == "PLANE" and face.normalAt().z < -0.999 and abs(face.Center().z - box.zmin) < 1e-6
+    ]
+    if len(bottoms) != 1:
+        raise UsageError(f"{path.name}: {name} has {len(bottoms)} bottom faces, a plate's body has one")
+    bottom = bottoms[0]
+    section = Polygon(_corners(bottom.outerWire()), [_corners(wire) for wire in bottom.innerWires()])
+    return ReadBody(name, section, box.zmin, box.zmax - box.zmin, solid.Volume())
+
+
+def _corners(wire: Any) -> list[tuple[float, float]]:
+    """Corners of a closed wire of straight edges, in the order of the walk."""
+    edges = [
+        ((start.x, start.y), (end.x, end.y)) for start, end in ((edge.startPoint(), edge.endPoint()) for edge in wire)
+    ]
+    corners = []
+    for index, (start, end) in enumerate(edges):
+        after = edges[(index + 1) % len(edges)]
+        # an edge may be stored against the walk: keep the end it shares with the next edge
+        corners.append(end if min(_far(end, after[0]), _far(end, after[1])) < 1e-6 else start)
+    return corners
+
+
+def _far(a: tuple[float, float], b: tuple[float, float]) -> float:
+    return max(abs(a[0] - b[0]), abs(a[1] - b[1]))
