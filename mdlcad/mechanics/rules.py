@@ -5,7 +5,7 @@ These numbers are *results* of sizing (``mechanics``); nobody downstream chooses
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,6 +32,8 @@ class LayoutRules:
         post_radius: radius of the fixed posts (rocker pivots, bias posts) that come down from the cover.
         post_offset: for every negative coupling, distance in x from the hub's centre to its pivot.
         link_plates: names of the rung plates, bottom to top ("H0", "H1", ...); posts reach down from the top.
+        bias_offsets: for every biased mass, where its post stands in y, measured from its row's centre.
+        eye_radius: outer radius of the eye that turns on a post (it stands still, but for its own row's flexure).
     """
 
     unit_left: float
@@ -54,3 +56,5 @@ class LayoutRules:
     post_radius: float
     post_offset: dict[str, float]
     link_plates: tuple[str, ...]
+    bias_offsets: dict[str, float] = field(default_factory=dict)
+    eye_radius: float = 0.0

@@ -1,0 +1,150 @@
+"""A linear plane frame: Euler-Bernoulli beams with axial stiffness, supports and springs.
+
+Three degrees of freedom a node: x, y (mm) and rotation (rad, anticlockwise). Forces in N, moments in N mm. The beam's
+stiffness matrix is the textbook one (cubic shape functions, exact for end loads), e.g. Przemieniecki, Theory of Matrix
+Structural Analysis, chapter 5.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+X, Y, TURN = 0, 1, 2
+
+
+def dof(node: int, direction: int) -> int:
+    """Number of a degree of freedom; ``direction`` is X, Y or TURN."""
+    return 3 * node + direction
+
+
+@dataclass(frozen=True, slots=True)
+class Beam:
+    """A straight prismatic beam between two nodes: ``axial`` = E A in N, ``bending`` = E I in N mm^2."""
+
+    start: int
+    end: int
+    axial: float
+    bending: float
+
+
+@dataclass(frozen=True, slots=True)
+class Spring:
+    """A spring from one degree of freedom to the ground (N/mm, or N mm/rad for a rotation)."""
+
+    dof: int
+    stiffness: float
+
+
+@dataclass(frozen=True, slots=True)
+class Solution:
+    """displacements and reactions, shape (3 nodes,); reactions are 0 (to rounding) at free degrees of freedom."""
+
+    displacements: Array
+    reactions: Array
+
+
+class Frame:
+    """Nodes of shape (n, 2) in mm, joined by beams; every node must be held by a beam or a spring."""
+
+    def __init__(self, nodes: Sequence[tuple[float, float]], beams: Sequence[Beam], springs: Sequence[Spring] = ()):
+        self.nodes: Array = np.asarray(nodes, dtype=np.float64)
+        self.beams = tuple(beams)
+        self.springs = tuple(springs)
+
+    def matrix(self) -> Array:
+        """Stiffness matrix, shape (3 n, 3 n), no supports applied."""
+        size = 3 * len(self.nodes)
+        total = np.zeros((size, size))
+        for beam in self.beams:
+            places = [3 * beam.start + i for i in range(3)] + [3 * beam.end + i for i in range(3)]
+            turn = self._rotation(beam)
+            total[np.ix_(places, places)] += turn.T @ _beam_matrix(self.length(beam), beam) @ turn
+        for spring in self.springs:
+            total[spring.dof, spring.dof] += spring.stiffness
+        return total
+
+    def solve(self, prescribed: Mapping[int, float], loads: Mapping[int, float] | None = None) -> Solution:
+        """Displacements under prescribed displacements (supports have 0) and loads, both by degree of freedom.
+
+        Raises:
+            numpy.linalg.LinAlgError: the supports leave a rigid motion free.
+        """
+        matrix = self.matrix()
+        size = len(matrix)
+        given = np.array(sorted(prescribed), dtype=np.intp)
+        free = np.setdiff1d(np.arange(size), given)
+        displacement = np.zeros(size)
+        displacement[given] = [prescribed[int(i)] for i in given]
+        force = np.zeros(size)
+        for place, value in (loads or {}).items():
+            force[place] += value
+        if len(free):
+            right = force[free] - matrix[np.ix_(free, given)] @ displacement[given]
+            displacement[free] = np.linalg.solve(matrix[np.ix_(free, free)], right)
+        return Solution(displacement, matrix @ displacement - force)
+
+    def condense(self, keep: Sequence[int], held: Sequence[int] = ()) -> Array:
+        """Stiffness matrix seen at the degrees of freedom ``keep``, others free, ``held`` ones at 0.
+
+        Returns: shape (len(keep), len(keep)).
+        """
+        support = dict.fromkeys(held, 0.0)
+        columns = []
+        for place in keep:
+            prescribed = support | dict.fromkeys(keep, 0.0) | {place: 1.0}
+            columns.append(self.solve(prescribed).reactions[list(keep)])
+        return np.array(columns).T
+
+    def length(self, beam: Beam) -> float:
+        """Length of a beam in mm."""
+        return float(np.hypot(*(self.nodes[beam.end] - self.nodes[beam.start])))
+
+    def end_moments(self, beam: Beam, solution: Solution) -> tuple[float, float]:
+        """Bending moments at the two ends of a beam, N mm (magnitude and sign of the end forces)."""
+        local = _beam_matrix(self.length(beam), beam) @ self.local(beam, solution)
+        return float(local[2]), float(local[5])
+
+    def local(self, beam: Beam, solution: Solution) -> Array:
+        """End displacements (along, across, turn) x 2 of a beam in its own axes, shape (6,)."""
+        places = [3 * beam.start + i for i in range(3)] + [3 * beam.end + i for i in range(3)]
+        return self._rotation(beam) @ solution.displacements[places]
+
+    def deformed(self, beam: Beam, solution: Solution, at: Array) -> tuple[Array, Array]:
+        """Deformed points, shape (m, 2), and turns, shape (m,), at fractions ``at`` of a beam's length."""
+        length = self.length(beam)
+        u0, v0, r0, u1, v1, r1 = self.local(beam, solution)
+        along = u0 + (u1 - u0) * at
+        h = (1 - 3 * at**2 + 2 * at**3, at - 2 * at**2 + at**3, 3 * at**2 - 2 * at**3, at**3 - at**2)
+        across = h[0] * v0 + h[1] * length * r0 + h[2] * v1 + h[3] * length * r1
+        slope = (6 * at**2 - 6 * at) * (v0 - v1) / length + (1 - 4 * at + 3 * at**2) * r0 + (3 * at**2 - 2 * at) * r1
+        axis = (self.nodes[beam.end] - self.nodes[beam.start]) / length
+        normal = np.array([-axis[1], axis[0]])
+        base = self.nodes[beam.start] + np.outer(at * length, axis)
+        return base + np.outer(along, axis) + np.outer(across, normal), slope
+
+    def _rotation(self, beam: Beam) -> Array:
+        c, s = (self.nodes[beam.end] - self.nodes[beam.start]) / self.length(beam)
+        one = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+        return np.kron(np.eye(2), one)
+
+
+def _beam_matrix(length: float, beam: Beam) -> Array:
+    a = beam.axial / length
+    b = beam.bending / length**3
+    row = np.zeros((6, 6))
+    row[np.ix_([0, 3], [0, 3])] = [[a, -a], [-a, a]]
+    row[np.ix_([1, 2, 4, 5], [1, 2, 4, 5])] = b * np.array(
+        [
+            [12.0, 6 * length, -12.0, 6 * length],
+            [6 * length, 4 * length**2, -6 * length, 2 * length**2],
+            [-12.0, -6 * length, 12.0, -6 * length],
+            [6 * length, 2 * length**2, -6 * length, 4 * length**2],
+        ]
+    )
+    return row

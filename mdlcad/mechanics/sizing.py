@@ -1,0 +1,325 @@
+"""Sizing: from the network's numbers to millimetres, and back to the numbers that the parts really have."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from mdlcad.errors import UsageError
+from mdlcad.mechanics.leaves import LeafKind, LeafSize, eye_radius, size_leaf
+from mdlcad.mechanics.process import PlateRole, Process
+from mdlcad.mechanics.rules import LayoutRules
+from mdlcad.mechanics.unit import SeriesSpring, UnitLaw, beam_strain, series_spring, unit_law
+from mdlcad.network.model import Coupling, CouplingKind, Mass, Network
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """Something that does not hold: ``rule`` (short name), ``subject`` (a part), the value and the limit it misses."""
+
+    rule: str
+    subject: str
+    value: float
+    limit: float
+    message: str
+
+
+@dataclass(frozen=True, slots=True)
+class CouplerSize:
+    """The flexure of one coupling and its reduced-model numbers (in units of S0).
+
+    Attributes:
+        strength: signed c that the flexure has; self_stiffness: s it adds to both masses.
+        quartic: in units of a mass's own quartic.
+    """
+
+    coupling: str
+    leaf: LeafSize
+    strength: float
+    self_stiffness: float
+    quartic: float
+
+
+@dataclass(frozen=True, slots=True)
+class BiasSize:
+    """The bias leaf of one mass.
+
+    Attributes:
+        offset: place of the post in y from the row's centre, mm: -q F0 over the leaf's (stiffened) stiffness.
+        bias: q that it gives; self_stiffness: what it adds to its mass, in units of S0.
+    """
+
+    mass: str
+    leaf: LeafSize
+    offset: float
+    bias: float
+    self_stiffness: float
+    quartic: float
+
+
+@dataclass(frozen=True, slots=True)
+class UnitSize:
+    """One mass's unit.
+
+    Attributes:
+        compensation_network: what the cell library computed; compensation: minus the self terms of the parts built.
+        preload: mm by which the clock block is pushed towards the shuttle when the clock stands in its middle (p = 1).
+        amplitude: largest |y| seen, mm; strain: of its beams there.
+    """
+
+    mass: str
+    phase: int
+    compensation_network: float
+    compensation: float
+    preload: float
+    amplitude: float
+    strain: float
+
+
+@dataclass(frozen=True, slots=True)
+class Sizing:
+    """Every dimension, with the numbers it gives the network back."""
+
+    process: str
+    law: UnitLaw
+    series: SeriesSpring
+    units: tuple[UnitSize, ...]
+    couplers: tuple[CouplerSize, ...]
+    biases: tuple[BiasSize, ...]
+    rules: LayoutRules
+    findings: tuple[Finding, ...]
+
+
+def size(network: Network, process: Process, peak: Mapping[str, float]) -> Sizing:
+    """Size every unit and flexure of ``network`` for ``process``.
+
+    Args:
+        peak: largest |x| of every mass in simulation.
+
+    Raises:
+        UsageError: a mass has no peak, or no part of the process can have the network's numbers.
+    """
+    for mass in network.masses:
+        if mass.name not in peak:
+            raise UsageError(f"no simulated peak for the mass {mass.name!r}")
+    law = unit_law(process)
+    throw = math.ceil(process.unit.throw_unit * max(peak[mass.name] for mass in network.masses) / 0.05 - 1e-9) * 0.05
+    throw = round(throw, 6)
+    couplers = _couplers(network, process, law, throw)
+    biases = _biases(network, process, law, throw)
+    absorbed = _self_terms(network, couplers, biases)
+    row_pitch = _up(law.shuttle_height + 2.0 * throw + process.link.gap)
+    k_least = min(min(mass.k0, mass.k0 + 2.0 * mass.k1) for mass in network.masses)
+    series = series_spring(process, law, row_pitch, k_least, max(absorbed.values()))
+    units = tuple(_unit(mass, absorbed[mass.name], peak[mass.name], process, law) for mass in network.masses)
+    rules = _rules(network, process, law, series, units, couplers, biases, throw, row_pitch)
+    findings = _findings(network, process, law, series, units, couplers, biases, rules)
+    return Sizing(process.name, law, series, units, couplers, biases, rules, findings)
+
+
+def _up(value: float) -> float:
+    """Rounded up to 0.05 mm."""
+    return round(math.ceil(value / 0.05 - 1e-9) * 0.05, 6)
+
+
+def _couplers(network: Network, process: Process, law: UnitLaw, throw: float) -> tuple[CouplerSize, ...]:
+    sized: dict[float, LeafSize] = {}
+    result = []
+    scale = process.unit.throw_unit**2 / law.stiffness_unit
+    for coupling in network.couplings:
+        if coupling.strength not in sized:
+            sized[coupling.strength] = _coupler_leaf(coupling, process, law, throw)
+        leaf = sized[coupling.strength]
+        sign = math.copysign(1.0, coupling.strength)
+        result.append(
+            CouplerSize(
+                coupling.name,
+                leaf,
+                sign * leaf.coupling / law.stiffness_unit,
+                leaf.own / law.stiffness_unit,
+                leaf.quartic * scale,
+            )
+        )
+    return tuple(result)
+
+
+def _coupler_leaf(coupling: Coupling, process: Process, law: UnitLaw, throw: float) -> LeafSize:
+    stiffness = abs(coupling.strength) * law.stiffness_unit
+    try:
+        if coupling.strength > 0.0:
+            return size_leaf(LeafKind.COUPLER, stiffness, ((throw, -throw),), process, law)
+        return size_leaf(LeafKind.ROCKER, stiffness, ((throw, -throw), (throw, throw)), process, law)
+    except ValueError as error:
+        raise UsageError(f"coupling {coupling.name}: {error}") from error
+
+
+def _biases(network: Network, process: Process, law: UnitLaw, throw: float) -> tuple[BiasSize, ...]:
+    stiffness = process.link.bias_ratio * law.stiffness_unit
+    scale = process.unit.throw_unit**2 / law.stiffness_unit
+    sized: dict[float, LeafSize] = {}
+    result = []
+    for mass in network.masses:
+        if mass.bias == 0.0:
+            continue
+        force = abs(mass.bias) * law.force_unit
+        if force not in sized:
+            try:
+                far = throw + force / stiffness
+                sized[force] = size_leaf(LeafKind.BIAS, stiffness, ((far, 0.0), (throw - far, 0.0)), process, law)
+            except ValueError as error:
+                raise UsageError(f"bias of {mass.name}: {error}") from error
+        leaf = sized[force]
+        offset = _preload(leaf.own, leaf.quartic, force)
+        result.append(
+            BiasSize(
+                mass=mass.name,
+                leaf=leaf,
+                offset=-math.copysign(offset, mass.bias),
+                bias=mass.bias,
+                self_stiffness=(leaf.own + 3.0 * leaf.quartic * offset**2) / law.stiffness_unit,
+                quartic=leaf.quartic * scale,
+            )
+        )
+    return tuple(result)
+
+
+def _preload(stiffness: float, quartic: float, force: float) -> float:
+    """The offset d at which stiffness d + quartic d^3 = force, by Newton's method (the left side is convex in d > 0)."""
+    offset = force / stiffness
+    for _ in range(50):
+        excess = stiffness * offset + quartic * offset**3 - force
+        offset -= excess / (stiffness + 3.0 * quartic * offset**2)
+    return offset
+
+
+def _self_terms(
+    network: Network, couplers: tuple[CouplerSize, ...], biases: tuple[BiasSize, ...]
+) -> dict[str, float]:
+    """Sum of the self terms of the parts that are built at every mass, in units of S0."""
+    total = {mass.name: 0.0 for mass in network.masses}
+    for coupling, coupler in zip(network.couplings, couplers, strict=True):
+        total[coupling.source] += coupler.self_stiffness
+        total[coupling.target] += coupler.self_stiffness
+    for bias in biases:
+        total[bias.mass] += bias.self_stiffness
+    return total
+
+
+def _unit(mass: Mass, absorbed: float, peak: float, process: Process, law: UnitLaw) -> UnitSize:
+    # The unit's own k at p = 1 is what the mass is to have, less what its springs add; kappa0 is the unloaded unit's.
+    own = mass.k0 + mass.k1 - absorbed
+    amplitude = process.unit.throw_unit * peak
+    return UnitSize(
+        mass=mass.name,
+        phase=mass.phase,
+        compensation_network=mass.compensation,
+        compensation=-absorbed,
+        preload=law.stroke_per_k * (process.unit.kappa0 - own),
+        amplitude=amplitude,
+        strain=beam_strain(process, amplitude),
+    )
+
+
+def _rules(
+    network: Network,
+    process: Process,
+    law: UnitLaw,
+    series: SeriesSpring,
+    units: tuple[UnitSize, ...],
+    couplers: tuple[CouplerSize, ...],
+    biases: tuple[BiasSize, ...],
+    throw: float,
+    row_pitch: float,
+) -> LayoutRules:
+    unit, pin, link = process.unit, process.pin, process.link
+    hub_half = pin.hub_gap / 2.0 + pin.side + 2.0 * pin.wall
+    clock_throw = _up(law.stroke_per_k * max(abs(mass.k1) for mass in network.masses))
+    overrun = max(0.0, clock_throw - min(item.preload for item in units))
+    left = _up(hub_half + unit.span + unit.rib_width)
+    right = _up(hub_half + unit.span + series.reach + overrun + link.gap)
+    reach = {item.coupling: _up(hub_half + item.leaf.reach) for item in couplers}
+    track = link.bar_width + link.gap
+    channel = max(reach.values(), default=0.0) + hub_half + link.gap + link.bar_width
+    return LayoutRules(
+        unit_left=left,
+        unit_right=right,
+        column_pitch=max(_up(left + right), _up(channel + (link.channel_tracks - 1) * track)),
+        row_pitch=row_pitch,
+        frame_width=process.frame.width,
+        gap=link.gap,
+        throw=throw,
+        clock_throw=clock_throw,
+        bar_width=link.bar_width,
+        pin=pin.side,
+        hub_pin_offset=pin.hub_gap / 2.0 + pin.wall + pin.side / 2.0,
+        hub_half=hub_half,
+        hub_gap=pin.hub_gap,
+        hub_height=law.shuttle_height,
+        track_pitch=track,
+        couplers=reach,
+        biases={item.mass: _up(hub_half + item.leaf.reach) for item in biases},
+        post_radius=link.post_radius,
+        post_offset={
+            item.coupling: round(hub_half + item.leaf.reach / 2.0, 6)
+            for item in couplers
+            if item.leaf.kind is LeafKind.ROCKER
+        },
+        link_plates=tuple(plate.name for plate in process.plates(PlateRole.RUNG)),
+        bias_offsets={item.mass: item.offset for item in biases},
+        eye_radius=eye_radius(process),
+    )
+
+
+def _findings(
+    network: Network,
+    process: Process,
+    law: UnitLaw,
+    series: SeriesSpring,
+    units: tuple[UnitSize, ...],
+    couplers: tuple[CouplerSize, ...],
+    biases: tuple[BiasSize, ...],
+    rules: LayoutRules,
+) -> tuple[Finding, ...]:
+    found: list[Finding] = []
+
+    def most(rule: str, subject: str, value: float, limit: float, message: str) -> None:
+        if value > limit:
+            found.append(Finding(rule, subject, value, limit, message))
+
+    def least(rule: str, subject: str, value: float, limit: float, message: str) -> None:
+        if value < limit:
+            found.append(Finding(rule, subject, value, limit, message))
+
+    machine, link = process.machine, process.link
+    limit = process.material(process.plates(PlateRole.UNIT)[0]).strain_limit
+    least("min_wall", "unit.beam", process.unit.beam_wall, machine.min_wall, "beams thinner than the machine makes")
+    least("min_wall", "unit.series", series.wall, machine.min_wall, "series leaves thinner than the machine makes")
+    least("min_gap", "link.gap", link.gap, machine.min_gap, "gap narrower than the machine makes")
+    most("strain", "unit.series", series.strain, limit, "series leaves strained if a clock peak finds a shuttle at 0")
+    for unit in units:
+        most("strain", f"unit.{unit.mass}", unit.strain, limit, "beams strained at the largest throw seen")
+    for mass in network.masses:
+        spread = max(abs(other.k1) for other in network.masses) - abs(mass.k1)
+        most("gain", f"unit.{mass.name}", spread, 0.0, "clock plates have one stroke: its k1 cannot be smaller")
+    sheet_limit = process.material(process.plates(PlateRole.RUNG)[0]).strain_limit
+    for kind, name, leaf in [("coupler", c.coupling, c.leaf) for c in couplers] + [
+        ("bias", b.mass, b.leaf) for b in biases
+    ]:
+        values = {
+            "strain": (leaf.strain, sheet_limit),
+            "slope": (leaf.slope, link.slope_limit),
+            "clearance": (leaf.clearance, link.leg_gap),
+            "quartic": (leaf.quartic * process.unit.throw_unit**2 / law.stiffness_unit, link.quartic_limit),
+        }
+        for miss in leaf.misses:
+            found.append(Finding(miss, f"{kind}.{name}", *values[miss], "no meander of the template keeps this limit"))
+    for coupling in network.couplings:
+        if coupling.kind is not CouplingKind.LINEAR or coupling.d1 != 0.0:
+            found.append(
+                Finding("clocked", f"coupler.{coupling.name}", coupling.d1, 0.0, "a clocked coupling has no passive part")
+            )
+    half = rules.row_pitch - rules.throw - rules.hub_height / 2.0 - rules.gap - rules.eye_radius
+    for bias in biases:
+        most("bias_offset", f"bias.{bias.mass}", abs(bias.offset), half, "its post comes too near the neighbouring row")
+    return tuple(found)

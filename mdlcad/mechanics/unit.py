@@ -1,0 +1,153 @@
+"""The buckling-beam unit: from the template to its stiffnesses, its series spring and its clock stroke.
+
+Symbols and derivations are in ``docs/mechanics.md``. Lengths in mm, forces in N, stiffness in N/mm.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from mdlcad.errors import UsageError
+from mdlcad.mechanics.process import PlateRole, Process
+
+
+@dataclass(frozen=True, slots=True)
+class UnitLaw:
+    """What every unit of the device shares.
+
+    Attributes:
+        beam_stiffness: K_b = 2 N E w t^3 / l^3, N/mm.
+        stiffness_unit: S0 = K_b / kappa0, N/mm; force_unit: F0 = S0 X0, N.
+        axial_stiffness: K_x = l^2 S0 / (8 g^2 X0^2), N/mm, of the whole unit in x.
+        beams_axial: N E w t / (2 l), N/mm: the beams of both sides in series.
+        series_stiffness: k_s = 1 / (1/K_x - 1/beams_axial), N/mm.
+        stroke_per_k: clock displacement that changes k by -1: 2 g X0^2 / l, mm.
+        wall_per_k: change of beam wall that changes k by 1: t / (3 kappa0), mm (K_b goes with t^3).
+        clock_force_unit: K_x times stroke_per_k, N per unit of k and unit.
+        shuttle_height: mm in y, over the outer faces of the beams.
+        shuttle_turn: stiffness of the shuttle against turning in the plane, N mm/rad.
+        shuttle_tilt: its stiffness against tilting about x (out of the plane), N mm/rad, without help of other plates.
+    """
+
+    beam_stiffness: float
+    stiffness_unit: float
+    force_unit: float
+    axial_stiffness: float
+    beams_axial: float
+    series_stiffness: float
+    stroke_per_k: float
+    wall_per_k: float
+    clock_force_unit: float
+    shuttle_height: float
+    shuttle_turn: float
+    shuttle_tilt: float
+
+
+@dataclass(frozen=True, slots=True)
+class SeriesSpring:
+    """The leaves along y between the beams' end block and the clock block.
+
+    Attributes:
+        leaves: how many; length: mm, between the arms; wall: mm.
+        travel: largest bend, mm, at the worst of the clock with the shuttle held at x = 0.
+        strain: 3 wall travel / length^2 there; strain_settled: the same when the shuttle has buckled.
+        turn_stiffness: of the end block against rotation, N mm/rad.
+        reach: length in x of end block, leaves and clock block, mm.
+    """
+
+    leaves: int
+    length: float
+    wall: float
+    travel: float
+    strain: float
+    strain_settled: float
+    turn_stiffness: float
+    reach: float
+
+
+def unit_law(process: Process) -> UnitLaw:
+    """The laws of the unit template.
+
+    Raises:
+        UsageError: the throw unit X0 is so small that even rigid beam ends are too soft (no series spring exists).
+    """
+    unit = process.unit
+    plate = process.plates(PlateRole.UNIT)[0]
+    modulus, depth = process.material(plate).modulus, plate.thickness
+    beam = unit.beams * modulus * depth * unit.beam_wall**3 / unit.span**3
+    beam_stiffness = 2.0 * beam
+    stiffness_unit = beam_stiffness / unit.kappa0
+    axial = unit.span**2 * stiffness_unit / (8.0 * unit.shape**2 * unit.throw_unit**2)
+    beams_axial = unit.beams * modulus * depth * unit.beam_wall / (2.0 * unit.span)
+    if axial >= beams_axial:
+        least = unit.span / unit.shape * math.sqrt(stiffness_unit / (8.0 * beams_axial))
+        raise UsageError(
+            f"process {process.name}: unit.throw_unit: {unit.throw_unit} mm leaves no room for a series spring; "
+            f"it must be greater than {least:.3f} mm"
+        )
+    one_axial = modulus * depth * unit.beam_wall / unit.span
+    inertia_z = unit.beam_wall * depth**3 / 12.0
+    count = 2 * unit.beams
+    lever = unit.pair_spacing / 2.0
+    spread = sum(((i / (unit.beams - 1) * 2.0 - 1.0) * lever) ** 2 for i in range(unit.beams)) if unit.beams > 1 else 0.0
+    return UnitLaw(
+        beam_stiffness=beam_stiffness,
+        stiffness_unit=stiffness_unit,
+        force_unit=stiffness_unit * unit.throw_unit,
+        axial_stiffness=axial,
+        beams_axial=beams_axial,
+        series_stiffness=1.0 / (1.0 / axial - 1.0 / beams_axial),
+        stroke_per_k=2.0 * unit.shape * unit.throw_unit**2 / unit.span,
+        wall_per_k=unit.beam_wall / (3.0 * unit.kappa0),
+        clock_force_unit=axial * 2.0 * unit.shape * unit.throw_unit**2 / unit.span,
+        shuttle_height=unit.pair_spacing + unit.beam_wall,
+        shuttle_turn=2.0 * one_axial * spread + count * 4.0 * modulus * depth * unit.beam_wall**3 / 12.0 / unit.span,
+        shuttle_tilt=2.0 * 12.0 * modulus * inertia_z / unit.span**3 * spread,
+    )
+
+
+def series_spring(process: Process, law: UnitLaw, row_pitch: float, k_least: float, self_most: float) -> SeriesSpring:
+    """Leaves that give k_s in the height a row leaves them.
+
+    The wall follows from the length: k_s = n E w wall^3 / length^3 (n guided leaves in parallel). The leaves run from
+    the end block's arm at the top of the row to the clock block's arm at its bottom, so they bend about the line of
+    the force and neither block wants to turn.
+
+    Args:
+        k_least: least stiffness k of any unit; self_most: largest sum of self terms that a unit's preload absorbs.
+    """
+    unit, link = process.unit, process.link
+    plate = process.plates(PlateRole.UNIT)[0]
+    modulus, depth = process.material(plate).modulus, plate.thickness
+    length = row_pitch - link.gap - 2.0 * unit.series_arm
+    wall = length * (law.series_stiffness / (unit.series_leaves * modulus * depth)) ** (1.0 / 3.0)
+    share = law.axial_stiffness / law.series_stiffness
+    travel = share * law.stroke_per_k * (unit.kappa0 - min(k_least, 0.0) + self_most)
+    settled = share * law.stroke_per_k * (unit.kappa0 + self_most)
+    spacing = wall + process.machine.min_gap
+    places = [(i - (unit.series_leaves - 1) / 2.0) * spacing for i in range(unit.series_leaves)]
+    return SeriesSpring(
+        leaves=unit.series_leaves,
+        length=length,
+        wall=wall,
+        travel=travel,
+        strain=3.0 * wall * travel / length**2,
+        strain_settled=3.0 * wall * settled / length**2,
+        turn_stiffness=modulus * depth * wall / length * sum(x * x for x in places),
+        reach=unit.block_width
+        + 2.0 * (process.machine.min_gap + travel)
+        + unit.series_leaves * wall
+        + (unit.series_leaves - 1) * process.machine.min_gap
+        + process.pin.side
+        + 2.0 * process.pin.wall,
+    )
+
+
+def beam_strain(process: Process, amplitude: float) -> float:
+    """Largest strain of a beam whose shuttle is ``amplitude`` mm from the middle: 3 t A / l^2 + pi^2 t^2 / (12 l^2).
+
+    The first term is the guided beam's end moment; the second the Euler load's mean compression.
+    """
+    unit = process.unit
+    return 3.0 * unit.beam_wall * amplitude / unit.span**2 + (math.pi * unit.beam_wall / unit.span) ** 2 / 12.0
