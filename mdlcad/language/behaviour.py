@@ -8,6 +8,7 @@ together are refused as well.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 
 from mdlcad.errors import Diagnostic
@@ -27,12 +28,16 @@ _REFUSED_DIRECTIVES = {
     "`file_pop": ("would make messages point at another file", "take it out"),
     "`line": ("would make messages point at the wrong line", "take it out"),
 }
+_CONTROL = re.compile(r"[\x00-\x08\x0b\x0e-\x1f\x7f]")
 _DECLARATIONS = ("boundary", "sensor", "actuator")
 
 
 def check_verilog(source: Source, sections: Sections) -> Iterator[Diagnostic]:
     """Findings about the Verilog text, in its order."""
     yield from _check_modules(source, sections)
+    for match in _CONTROL.finditer(source.text, sections.declarations_end, sections.verilog_end):
+        message = f"the control character U+{ord(match.group()):04X} in the Verilog"
+        yield source.error(source.where(match.start()), message, "take it out")
     before: Lexeme | None = None
     for index, lexeme in enumerate(sections.verilog):
         trouble = _refusal(lexeme) or _glue(source, sections.verilog, index, before)
@@ -79,18 +84,13 @@ def _refusal(lexeme: Lexeme) -> tuple[str, str] | None:
             consequence, hint = _REFUSED_DIRECTIVES[lexeme.text]
             return f"'{name}' {consequence}", hint
         case LexemeKind.DIRECTIVE if lexeme.text == "`":
-            return (
-                "a '`' that begins no directive and no macro",
-                "join no words with '``', and write no space behind '`'",
-            )
+            return "a '`' without a word", "write the directive or macro right behind it, and join no words with '``'"
         case LexemeKind.WORD if lexeme.text == "import":
             return "'import' would run code from outside the program", "write the function in Verilog"
         case LexemeKind.ESCAPED if any(char in lexeme.text for char in '$`"/'):
             return f"the escaped name '{name}' holds one of $ ` \" /", "use letters, digits and '_'"
         case LexemeKind.OPEN_TEXT:
             return "a text that does not end on its line", 'close it with "'
-        case LexemeKind.OTHER if not lexeme.text.isprintable():
-            return f"the control character U+{ord(lexeme.text):04X} in the Verilog", "take it out"
     return None
 
 
@@ -100,20 +100,14 @@ def _glue(source: Source, verilog: tuple[Lexeme, ...], index: int, before: Lexem
     if lexeme.kind is not LexemeKind.DIRECTIVE:
         return None
     # a lone '`' and a lone '$' are refused already, so what can be glued ends in a letter, digit, '_' or '$'
-    if (
-        before
-        and before.offset + len(before.text) == lexeme.offset
-        and (before.text[-1].isalnum() or before.text[-1] in "_$")
-    ):
-        return (
-            f"'{shown(lexeme.text)}' stands right behind a word, and would be joined to it",
-            "write a space before it",
-        )
+    touches = before is not None and before.offset + len(before.text) == lexeme.offset
+    if before and touches and (before.text[-1].isalnum() or before.text[-1] in "_$"):
+        return f"'{shown(lexeme.text)}' would be joined to the word before it", "write a space between them"
     if lexeme.text == "`define" and index + 1 < len(verilog):
         name = verilog[index + 1]
-        if source.text[name.offset + len(name.text)] == "(":
+        if source.text.startswith("(", name.offset + len(name.text)):
             return (
                 f"the macro '{shown(name.text)}' takes arguments",
-                "use a Verilog function, or a macro without arguments",
+                "use a Verilog function",
             )
     return None

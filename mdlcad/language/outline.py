@@ -85,15 +85,10 @@ def _check_polygon(source: Source, written: tuple[WrittenLine, ...], lines: tupl
         if line.start == before.end:
             continue
         sound = False
+        message = f"the boundary is open: '{before.name}' ends at {before.end}, '{line.name}' starts at {line.start}"
         if index:
-            message = (
-                f"the boundary is open: '{line.name}' starts at {line.start}, but '{before.name}' ends at {before.end}"
-            )
             yield source.error(written[index].start_where, message, "start every line where the one before it ends")
         else:
-            message = (
-                f"the boundary is open: '{before.name}' ends at {before.end}, but '{line.name}' starts at {line.start}"
-            )
             yield source.error(written[-1].end_where, message, "end the last line where the first one starts")
     if not sound:
         return

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import cache
-from itertools import groupby
+from itertools import groupby, islice
 from pathlib import Path
 
 from lark import Lark, Token, Tree, UnexpectedToken
@@ -24,7 +24,8 @@ from mdlcad.language.explain import explain
 from mdlcad.language.source import Source
 
 _STARTS = {"MECHANICALMODULE": "header", "BOUNDARY": "boundary", "SENSOR": "sensor", "ACTUATOR": "actuator"}
-# a file with more mistakes than this is not MDL, and reading on would only take time
+# a file with more words or more mistakes than this is not MDL, and reading on would only take time
+_MOST_TOKENS = 50_000
 _MOST_ERRORS = 50
 
 
@@ -35,7 +36,7 @@ def _grammar() -> Lark:
         text,
         parser="lalr",
         lexer="basic",
-        start=sorted(_STARTS.values()),
+        start=[*_STARTS.values(), "refused"],
         maybe_placeholders=False,
         propagate_positions=True,
     )
@@ -50,7 +51,13 @@ def parse_declarations(source: Source, end: int) -> tuple[Program, list[Diagnost
     findings: list[Diagnostic] = []
     trees: list[Tree[Token]] = []
     stop = _stop_token(source, end)
-    chunks = list(_chunks(_grammar().lex(source.text[:end])))
+    tokens = list(islice(_grammar().lex(source.text[:end]), _MOST_TOKENS + 1))
+    if len(tokens) > _MOST_TOKENS:
+        message = f"the declarations hold more than {_MOST_TOKENS} words and signs"
+        hint = "an MDL program has a few hundred; is this the right file?"
+        last = Where(tokens[-1].line or 1, tokens[-1].column or 1)
+        return Program((), (), (), broken=True), [source.error(last, message, hint)]
+    chunks = list(_chunks(tokens))
     if not chunks or chunks[0][0].type != "MECHANICALMODULE":
         findings.append(explain(source, chunks[0][0] if chunks else stop, "file", ["MECHANICALMODULE"]))
     for number, chunk in enumerate(chunks):
@@ -74,7 +81,7 @@ def _stop_token(source: Source, end: int) -> Token:
     return Token("STOP", text[0] if text else "", line=where.line, column=where.column)
 
 
-def _chunks(tokens: Iterator[Token]) -> Iterator[list[Token]]:
+def _chunks(tokens: list[Token]) -> Iterator[list[Token]]:
     """Cut before every keyword that begins a declaration (these words are reserved, so they begin nothing else)."""
     number = 0
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import islice
 from pathlib import Path, PurePosixPath
 
 from mdlcad.errors import Diagnostic, InputError
@@ -14,7 +15,7 @@ from mdlcad.language.parse import parse_declarations
 from mdlcad.language.sections import Sections, cut
 from mdlcad.language.source import Source, make_source, read_source
 
-# more than anyone reads; a file that is not MDL at all would fill the screen for minutes
+# more than anyone reads, and a file that is not MDL at all would keep us busy
 _MOST_FINDINGS = 100
 
 
@@ -39,8 +40,8 @@ def parse_device(text: str, file: str) -> Device:
 def _device(source: Source) -> Device:
     sections = cut(source)
     program, findings = parse_declarations(source, sections.declarations_end)
-    findings += check_program(source, program, sections)
-    findings += check_verilog(source, sections)
+    findings += islice(check_program(source, program, sections), _MOST_FINDINGS)
+    findings += islice(check_verilog(source, sections), _MOST_FINDINGS)
     findings += sections.findings
     if findings:
         raise InputError(_first(source, sorted(findings)))
@@ -50,12 +51,8 @@ def _device(source: Source) -> Device:
 def _first(source: Source, findings: list[Diagnostic]) -> list[Diagnostic]:
     if len(findings) <= _MOST_FINDINGS:
         return findings
-    shown, hidden = findings[:_MOST_FINDINGS], len(findings) - _MOST_FINDINGS
-    last = shown[-1]
-    return [
-        *shown,
-        Diagnostic(source.file, last.line, last.column, f"and {hidden} more from here on", "mend these first"),
-    ]
+    more = source.error(source.end(), f"there are more than {_MOST_FINDINGS} findings", "mend the first ones first")
+    return [*findings[:_MOST_FINDINGS], more]
 
 
 def _build(source: Source, sections: Sections, program: Program) -> Device:
