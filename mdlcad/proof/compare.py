@@ -1,0 +1,139 @@
+"""The network's side of a proof: run the itinerary, read the masses, compare every decision."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mdlcad.network.model import Network
+from mdlcad.proof.behaviour import Behaviour, Bits
+from mdlcad.proof.itinerary import Itinerary
+from mdlcad.proof.outcome import Mismatch
+from mdlcad.proof.timing import Timing
+from mdlcad.simulation.decode import decode, instants
+from mdlcad.simulation.run import Stimulus, Watch, simulate
+from mdlcad.simulation.system import Floats, System
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Comparison:
+    """Decisions of the network beside those of the reference; lanes L, decisions D.
+
+    Attributes:
+        registers: names of the state bits that have a mass; places of those bits in the reference's state.
+        states: uint8[D + 1, r, L] and outputs: uint8[D, O, L], as read (2: neither 0 nor 1).
+        ticks: bool[D, L], the tick came when it should, and only then, up to and during each decision.
+        wrong: int[L], first wrong decision of each lane, D if there is none.
+        margin, margin_mass: smallest |x| at a read-out and its mass.
+        peak: float[n], largest |x| of each mass.
+    """
+
+    registers: tuple[tuple[str, int], ...]
+    states: Bits
+    outputs: Bits
+    ticks: NDArray[np.bool_]
+    wrong: NDArray[np.int64]
+    margin: float
+    margin_mass: str
+    peak: Floats
+
+
+def compare(
+    network: Network,
+    reference: Behaviour,
+    system: System,
+    itinerary: Itinerary,
+    timing: Timing,
+    *,
+    sensor_force: float,
+    steps_per_period: int,
+    workers: int,
+) -> Comparison:
+    """Simulate ``itinerary`` on the network and compare. The names of bits must agree (``prove`` checks them)."""
+    decisions, lanes, _ = itinerary.inputs.shape
+    registers = tuple((register.bit, reference.state.index(register.bit)) for register in network.registers)
+    state_masses = [system.index(register.mass) for register in network.registers]
+    giver = {port.bit: port.mass for port in network.actuators}
+    output_masses = [system.index(giver[bit]) for bit in reference.outputs]
+    tick_masses = [] if network.tick is None else [system.index(network.tick)]
+    masses = np.array(state_masses + output_masses + tick_masses, dtype=np.int64)
+    instant = instants(system, masses, steps_per_period)
+
+    taker = {port.bit: port.mass for port in network.sensors}
+    sensors = np.array([system.index(taker[bit]) for bit in reference.inputs], dtype=np.int64)
+    drive = sensor_force * (2.0 * itinerary.inputs.transpose(0, 2, 1) - 1.0) * system.polarity[sensors][:, None]
+    stimulus = Stimulus(sensors, np.ascontiguousarray(drive), timing.first_steps, timing.interval_steps)
+    cycles = timing.first_cycle + decisions * timing.period + 1
+    run = simulate(
+        system,
+        stimulus,
+        cycles * steps_per_period,
+        watch=Watch(masses, instant),
+        steps_per_period=steps_per_period,
+        workers=workers,
+    )
+
+    # readings[cycle, w] -> x[decision, w], each mass in its own cycle
+    cycle = timing.reading_cycle(instant) + timing.period * np.arange(decisions + 1)[:, None]
+    x = run.readings[cycle, np.arange(len(masses))]
+    bits = decode(system, masses, x)
+    r, o = len(state_masses), len(output_masses)
+    states, outputs = bits[:, :r], bits[:-1, r : r + o]
+    ticks = np.ones((decisions, lanes), dtype=bool)
+    if tick_masses:
+        seen = decode(system, np.array(tick_masses), run.readings[:, r + o :])[:, 0]
+        ticks = _ticks_right(seen, timing, decisions)
+
+    expected_states = itinerary.states.transpose(0, 2, 1)[:, [place for _, place in registers]]
+    state_right = (states == expected_states).all(axis=1)
+    output_right = (outputs == itinerary.outputs.transpose(0, 2, 1)).all(axis=1)
+    right = state_right[:-1] & state_right[1:] & output_right & ticks
+    wrong = np.where(right.all(axis=0), decisions, np.argmin(right, axis=0))
+
+    distance = np.nan_to_num(np.abs(x[:decisions]), nan=0.0, posinf=0.0).min(axis=(0, 2))
+    weakest = int(np.argmin(distance))
+    peak = np.nan_to_num(run.peak, nan=np.finfo(float).max).max(axis=1)
+    margin_mass = system.names[masses[weakest]]
+    return Comparison(registers, states, outputs, ticks, wrong, float(distance[weakest]), margin_mass, peak)
+
+
+def _ticks_right(seen: Bits, timing: Timing, decisions: int) -> NDArray[np.bool_]:
+    """bool[D, L] from the tick mass's bits uint8[cycles, L]; decision d answers for the cycles up to tick d + 1."""
+    cycle = np.arange(len(seen))
+    due = (cycle - timing.first_cycle) % timing.period == 0
+    right = seen == due[:, None]
+    owner = np.clip(-(-(cycle - timing.first_cycle) // timing.period) - 1, 0, decisions - 1)
+    ticks = np.ones((decisions, seen.shape[1]), dtype=bool)
+    np.logical_and.at(ticks, owner, right)
+    return ticks
+
+
+def describe(
+    reference: Behaviour, itinerary: Itinerary, comparison: Comparison, tick: str | None, lane: int
+) -> Mismatch:
+    """The first wrong decision of ``lane`` in words."""
+    d = int(comparison.wrong[lane])
+    pairs: list[tuple[str, int, int]] = []
+    for moment, prefix in ((d, "power-up " if d == 0 else ""), (d + 1, "next ")):
+        for r, (bit, place) in enumerate(comparison.registers):
+            pairs.append(
+                (prefix + bit, int(itinerary.states[moment, lane, place]), int(comparison.states[moment, r, lane]))
+            )
+    for o, bit in enumerate(reference.outputs):
+        pairs.append((bit, int(itinerary.outputs[d, lane, o]), int(comparison.outputs[d, o, lane])))
+    differing = [pair for pair in pairs if pair[1] != pair[2]]
+    expected = [f"{name}={want}" for name, want, _ in differing]
+    got = [f"{name}={'01?'[have]}" for name, _, have in differing]
+    if not comparison.ticks[d, lane]:
+        expected.append(f"one tick of {tick}, in its cycle")
+        got.append("none, or others too")
+    return Mismatch(
+        lane=lane,
+        decision=d,
+        state=" ".join(f"{bit}={v}" for bit, v in zip(reference.state, itinerary.states[d, lane], strict=True)),
+        inputs=" ".join(f"{bit}={v}" for bit, v in zip(reference.inputs, itinerary.inputs[d, lane], strict=True)),
+        expected=" ".join(expected),
+        got=" ".join(got),
+    )

@@ -1,0 +1,96 @@
+"""What a proof does with a device: the inputs of every lane, and what the reference makes of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mdlcad.proof.behaviour import Behaviour, Bits
+from mdlcad.proof.machine import (
+    EXHAUSTIVE_BITS,
+    Graph,
+    all_vectors,
+    explore,
+    history_graph,
+    single_state_graph,
+    some_vectors,
+)
+from mdlcad.proof.walks import plan
+
+_LANES = 32
+
+# Lanes are filled up with random inputs to this length, so that nothing is shown for the first decisions only.
+_LEAST_DECISIONS = 24
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Itinerary:
+    """D decisions of L lanes, and how they were chosen.
+
+    Attributes:
+        inputs: uint8[D, L, I].
+        states: uint8[D + 1, L, S], the reference before each decision and after the last.
+        outputs: uint8[D, L, O], the reference's outputs of each decision.
+        total, unreachable, exhaustive, reachable_states: as in ``Proof``.
+        method: in words.
+    """
+
+    inputs: Bits
+    states: Bits
+    outputs: Bits
+    total: int
+    unreachable: int
+    exhaustive: bool
+    reachable_states: int
+    method: str
+
+
+def make_itinerary(reference: Behaviour, decisions: int, seed: int) -> Itinerary:
+    """Choose transitions and walks: all transitions if they are known and few enough, else ``decisions`` of them."""
+    graph, wanted, exhaustive, method = _goals(reference, decisions, seed)
+    walks = plan(graph, wanted, _LANES, seed)
+    length = max(_LEAST_DECISIONS, max(map(len, walks)), 0 if exhaustive else -(-decisions // len(walks)))
+    # Random inputs after the planned ones, vectors that the graph knows and others alike.
+    inputs = np.random.default_rng([seed, 2]).integers(0, 2, (length, len(walks), len(reference.inputs)), np.uint8)
+    for lane, walk in enumerate(walks):
+        inputs[: len(walk), lane] = graph.vectors[walk]
+
+    states = np.empty((length + 1, len(walks), len(reference.state)), np.uint8)
+    outputs = np.empty((length, len(walks), len(reference.outputs)), np.uint8)
+    states[0] = reference.initial
+    for d in range(length):
+        states[d + 1], outputs[d] = reference.step(states[d], inputs[d])
+
+    bits = len(reference.state) + len(reference.inputs)
+    known = len(graph.states) if reference.state else 1
+    total = known << len(reference.inputs) if graph.complete else 1 << bits
+    unreachable = (1 << bits) - total
+    return Itinerary(inputs, states, outputs, total, unreachable, exhaustive, known, method)
+
+
+def _goals(reference: Behaviour, decisions: int, seed: int) -> tuple[Graph, NDArray[np.bool_], bool, str]:
+    """The graph to walk, bool[n, k] the moves to make, whether those are all there are, and words about it."""
+    inputs = len(reference.inputs)
+    if not reference.state:
+        if 2 * inputs <= EXHAUSTIVE_BITS:
+            graph = history_graph(all_vectors(inputs))
+            method = "every input vector after every other"
+        elif inputs <= EXHAUSTIVE_BITS:
+            graph = single_state_graph(all_vectors(inputs), True)
+            method = "every input vector, in random order"
+        else:
+            graph = single_state_graph(some_vectors(inputs, decisions, seed), False)
+            method = "random input vectors"
+        return graph, graph.following >= 0, graph.complete, method
+
+    graph = explore(reference, seed)
+    if graph.complete and graph.following.size <= max(decisions, 1 << EXHAUSTIVE_BITS):
+        return graph, np.ones(graph.following.shape, dtype=bool), True, "every input vector in every reachable state"
+    wanted = np.zeros(graph.following.shape, dtype=bool)
+    reached = graph.first[1:]
+    wanted[reached[:, 0], reached[:, 1]] = True  # every state that was found is visited
+    sample = np.random.default_rng([seed, 3]).permutation(wanted.size)[: max(0, decisions - len(reached))]
+    wanted.ravel()[sample] = True
+    return graph, wanted, False, "every state found, and random transitions from them"
