@@ -51,7 +51,11 @@ def compare(
     steps_per_period: int,
     workers: int,
 ) -> Comparison:
-    """Simulate ``itinerary`` on the network and compare. The names of bits must agree (``prove`` checks them)."""
+    """Simulate ``itinerary`` on the network and compare. The names of bits must agree (``prove`` checks them).
+
+    Raises:
+        NoTick: the first tick is too early to read the masses.
+    """
     decisions, lanes, _ = itinerary.inputs.shape
     registers = tuple((register.bit, reference.state.index(register.bit)) for register in network.registers)
     state_masses = [system.index(register.mass) for register in network.registers]
@@ -65,6 +69,8 @@ def compare(
     sensors = np.array([system.index(taker[bit]) for bit in reference.inputs], dtype=np.int64)
     drive = sensor_force * (2.0 * itinerary.inputs.transpose(0, 2, 1) - 1.0) * system.polarity[sensors][:, None]
     stimulus = Stimulus(sensors, np.ascontiguousarray(drive), timing.first_steps, timing.interval_steps)
+    # of every decision and after the last, each mass in its own cycle
+    cycle = timing.reading_cycle(instant) + timing.period * np.arange(decisions + 1)[:, None]
     cycles = timing.first_cycle + decisions * timing.period + 1
     run = simulate(
         system,
@@ -75,8 +81,6 @@ def compare(
         workers=workers,
     )
 
-    # readings[cycle, w] -> x[decision, w], each mass in its own cycle
-    cycle = timing.reading_cycle(instant) + timing.period * np.arange(decisions + 1)[:, None]
     x = run.readings[cycle, np.arange(len(masses))]
     bits = decode(system, masses, x)
     r, o = len(state_masses), len(output_masses)

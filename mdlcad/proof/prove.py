@@ -54,10 +54,6 @@ def prove(
     margin, margin_mass, peaks = 0.0, "", dict[str, float]()
     try:
         timing = find_timing(network, system, steps_per_period)
-    except NoTick as problem:
-        mismatches = 1
-        first = (Mismatch(0, 0, "", "", f"a tick every {network.cycles_per_tick} cycles", str(problem)),)
-    else:
         comparison = compare(
             network,
             reference,
@@ -68,6 +64,10 @@ def prove(
             steps_per_period=steps_per_period,
             workers=workers,
         )
+    except NoTick as problem:
+        mismatches = 1
+        first = (Mismatch(0, 0, "", "", f"a tick every {network.cycles_per_tick} cycles", str(problem)),)
+    else:
         bad = [int(lane) for lane in np.flatnonzero(comparison.wrong < length)]
         bad.sort(key=lambda lane: (int(comparison.wrong[lane]), lane))
         first = tuple(describe(reference, itinerary, comparison, network.tick, lane) for lane in bad[:_REPORTED])

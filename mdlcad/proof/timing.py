@@ -26,6 +26,10 @@ from mdlcad.simulation.run import Stimulus, Watch, simulate
 from mdlcad.simulation.system import Ints, System
 
 
+class NoTick(Exception):
+    """The tick mass does not tick once every N cycles, or too early; the message says what it does."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Timing:
     """Instants of a device, in steps and clock cycles.
@@ -45,19 +49,22 @@ class Timing:
     interval_steps: int
 
     def reading_cycle(self, instant: Ints) -> Ints:
-        """int[w]: for masses read at step ``instant`` (int[w]) of a cycle, the cycle to read for decision 0."""
-        return self.first_cycle - (instant > self.tick_instant).astype(np.int64)
+        """int[w]: for masses read at step ``instant`` (int[w]) of a cycle, the cycle to read for decision 0.
 
-
-class NoTick(Exception):
-    """The tick mass does not tick once every N cycles; the message says what it does."""
+        Raises:
+            NoTick: the first tick comes before such a mass was read once.
+        """
+        cycle = self.first_cycle - (instant > self.tick_instant).astype(np.int64)
+        if len(cycle) and cycle.min() < 0:
+            raise NoTick("the first tick is in cycle 0, before the registers and outputs can be read")
+        return cycle
 
 
 def find_timing(network: Network, system: System, steps_per_period: int) -> Timing:
     """Derive the timing, running the network without forces for a few decisions to find its tick.
 
     Raises:
-        NoTick: see there; also if the first tick is in cycle 0, before anything could have been computed.
+        NoTick: see there.
     """
     n = network.cycles_per_tick
     if network.tick is None:
@@ -73,7 +80,5 @@ def find_timing(network: Network, system: System, steps_per_period: int) -> Timi
     if len(seen) != 4 or np.any(np.diff(seen) != n) or np.any(bits > 1):
         word = "".join("01?"[bit] for bit in bits)
         raise NoTick(f"tick mass {network.tick!r} should be 1 once every {n} cycles, but reads {word}")
-    if seen[0] == 0:
-        raise NoTick(f"tick mass {network.tick!r} ticks in cycle 0, before the logic can have settled")
     first = seen[0] * steps_per_period + int(instant[0]) + steps_per_period
     return Timing(n, seen[0], int(instant[0]), first, n * steps_per_period)
