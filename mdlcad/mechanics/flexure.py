@@ -7,10 +7,13 @@ deflection does not stiffen it. Lengths in mm, forces in N.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
+from scipy.optimize import brentq
 
 from mdlcad.mechanics.frame import TURN, Array, Beam, Frame, Solution, X, Y, dof
 
@@ -194,7 +197,7 @@ def examine(chain: Chain, solution: Solution) -> Deflection:
 def _clearance(legs: list[Array], faces: tuple[float, float], wall: float) -> float:
     least = min(float(np.min(np.vstack(legs)[:, 0])) - faces[0], faces[1] - float(np.max(np.vstack(legs)[:, 0])))
     least -= wall / 2.0
-    for one, other in zip(legs, legs[1:], strict=False):
+    for one, other in pairwise(legs):
         # both legs run through the same heights; compare them there
         low = max(one[:, 1].min(), other[:, 1].min())
         high = min(one[:, 1].max(), other[:, 1].max())
@@ -209,13 +212,11 @@ def _x_at(leg: Array, heights: Array) -> Array:
 
 
 def pitch_for(stiffness: Callable[[float], float], target: float, low: float, high: float) -> float | None:
-    """The pitch in [low, high] at which the falling ``stiffness(pitch)`` is ``target``; None if it is not bracketed."""
+    """The pitch in [low, high], to 1 um, at which the falling ``stiffness(pitch)`` is ``target``, or None.
+
+    Solved by Brent's method on the logarithm of the stiffness, which is close to linear in that of the pitch.
+    """
     if stiffness(low) < target or stiffness(high) > target:
         return None
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        if stiffness(middle) > target:
-            low = middle
-        else:
-            high = middle
-    return 0.5 * (low + high)
+    root = brentq(lambda log: math.log(stiffness(math.exp(log)) / target), math.log(low), math.log(high), xtol=1e-6)
+    return round(math.exp(root), 3)

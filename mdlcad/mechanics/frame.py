@@ -94,12 +94,14 @@ class Frame:
 
         Returns: shape (len(keep), len(keep)).
         """
-        support = dict.fromkeys(held, 0.0)
-        columns = []
-        for place in keep:
-            prescribed = support | dict.fromkeys(keep, 0.0) | {place: 1.0}
-            columns.append(self.solve(prescribed).reactions[list(keep)])
-        return np.array(columns).T
+        matrix = self.matrix()
+        kept = np.array(keep, dtype=np.intp)
+        free = np.setdiff1d(np.arange(len(matrix)), [*keep, *held])
+        inner = matrix[np.ix_(kept, kept)]
+        if not len(free):
+            return inner
+        across = matrix[np.ix_(free, kept)]
+        return np.asarray(inner - across.T @ np.linalg.solve(matrix[np.ix_(free, free)], across), dtype=np.float64)
 
     def length(self, beam: Beam) -> float:
         """Length of a beam in mm."""

@@ -51,6 +51,11 @@ class LeafSize:
     misses: tuple[str, ...]
 
 
+def trim(value: float) -> float:
+    """Nine significant digits: what linear algebra libraries differ in is not written to artefacts."""
+    return float(f"{value:.9g}")
+
+
 def eye_radius(process: Process) -> float:
     """Outer radius of an eye, mm."""
     return process.link.post_radius + process.link.post_fit + process.link.eye_wall
@@ -97,14 +102,14 @@ def size_leaf(
             found = _examine(kind, Meander(wall, legs, pitch, amplitude), cases, process, sheet, law)
             if best is None or (len(found.misses), found.reach) < (len(best.misses), best.reach):
                 best = found
+            if not found.misses:
+                break  # a thicker wall makes a longer leaf
     if best is None:
         raise ValueError(f"no meander of the process {process.name} has a stiffness of {stiffness} N/mm")
     return best
 
 
-def _stiffness(
-    kind: LeafKind, wall: float, legs: int, amplitude: float, process: Process
-) -> Callable[[float], float]:
+def _stiffness(kind: LeafKind, wall: float, legs: int, amplitude: float, process: Process) -> Callable[[float], float]:
     column = 1 if kind is LeafKind.ROCKER else 0
 
     def at(pitch: float) -> float:
@@ -140,16 +145,16 @@ def _examine(
     return LeafSize(
         kind=kind,
         shape=shape,
-        reach=float(chain.frame.nodes[chain.right][0]),
-        coupling=float(matrix[0, 1] if kind is LeafKind.ROCKER else matrix[0, 0]),
-        own=float(matrix[0, 0]),
-        axial=axial,
-        quartic=quartic,
-        strain=worst.strain,
-        slope=worst.slope,
-        eye_turn=worst.eye,
-        clearance=worst.clearance,
-        sweep=worst.sweep,
+        reach=round(float(chain.frame.nodes[chain.right][0]), 6),
+        coupling=trim(float(matrix[0, 1] if kind is LeafKind.ROCKER else matrix[0, 0])),
+        own=trim(float(matrix[0, 0])),
+        axial=trim(axial),
+        quartic=trim(quartic),
+        strain=trim(worst.strain),
+        slope=trim(worst.slope),
+        eye_turn=trim(worst.eye),
+        clearance=trim(worst.clearance),
+        sweep=trim(worst.sweep),
         misses=tuple(name for name, holds in limits.items() if not holds),
     )
 

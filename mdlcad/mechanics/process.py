@@ -33,10 +33,11 @@ class PlateRole(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Material:
-    """modulus: MPa; strain_limit: largest strain in repeated use; density: g/cm^3; creep: a note for the maker."""
+    """modulus: MPa; strain_limit, strain_peak: in repeated use, at rare peaks; density: g/cm^3; creep: a note."""
 
     modulus: float
     strain_limit: float
+    strain_peak: float
     density: float
     creep: str
 
@@ -78,7 +79,7 @@ class UnitTemplate:
     Attributes:
         beams: N, beams a side; beam_wall: t; span: l; pair_spacing: h; throw_unit: X0, mm per unit x.
         kappa0: K_b in units of S0; shape: g, shortening coefficient of a guided beam.
-        series_leaves: leaves of the series spring; series_arm: width of the arms that hold them.
+        series_leaves: leaves in each bank of the series spring; series_arm: width of its stems and trusses.
         block_width: width of the beams' end block; rib_width: width of the frame rib.
     """
 
@@ -241,7 +242,7 @@ def _faults(process: Process) -> list[tuple[str, str]]:
         if isinstance(value := getattr(getattr(process, section.name), entry.name), float | int) and value <= 0.0
     ]
     for name, material in process.materials.items():
-        for key in ("modulus", "strain_limit", "density"):
+        for key in ("modulus", "strain_limit", "strain_peak", "density"):
             if getattr(material, key) <= 0.0:
                 faults.append((f"materials.{name}.{key}", "must be greater than 0"))
     for plate in process.stack.plates:
@@ -263,7 +264,7 @@ def _faults(process: Process) -> list[tuple[str, str]]:
     if any(legs < 2 or legs % 2 for legs in process.link.legs) or not process.link.legs:
         faults.append(("link.legs", "must be even numbers, 2 or more (a meander is symmetric about its middle)"))
     if process.unit.series_leaves < 2:
-        faults.append(("unit.series_leaves", "must be 2 or more, or the end block can rotate"))
+        faults.append(("unit.series_leaves", "must be 2 or more, or the trusses can turn"))
     if process.unit.rib_width < process.pin.side + 2.0 * process.pin.wall:
         faults.append(("unit.rib_width", "must hold a pin with its two walls"))
     return faults

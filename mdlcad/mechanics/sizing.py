@@ -7,10 +7,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from mdlcad.errors import UsageError
-from mdlcad.mechanics.leaves import LeafKind, LeafSize, eye_radius, size_leaf
+from mdlcad.mechanics.leaves import LeafKind, LeafSize, eye_radius, size_leaf, trim
 from mdlcad.mechanics.process import PlateRole, Process
 from mdlcad.mechanics.rules import LayoutRules
-from mdlcad.mechanics.unit import SeriesSpring, UnitLaw, beam_strain, series_spring, unit_law
+from mdlcad.mechanics.series import SeriesSpring, series_spring
+from mdlcad.mechanics.unit import UnitLaw, beam_strain, unit_law
 from mdlcad.network.model import Coupling, CouplingKind, Mass, Network
 
 
@@ -136,9 +137,9 @@ def _couplers(network: Network, process: Process, law: UnitLaw, throw: float) ->
             CouplerSize(
                 coupling.name,
                 leaf,
-                sign * leaf.coupling / law.stiffness_unit,
-                leaf.own / law.stiffness_unit,
-                leaf.quartic * scale,
+                trim(sign * leaf.coupling / law.stiffness_unit),
+                trim(leaf.own / law.stiffness_unit),
+                trim(leaf.quartic * scale),
             )
         )
     return tuple(result)
@@ -175,17 +176,17 @@ def _biases(network: Network, process: Process, law: UnitLaw, throw: float) -> t
             BiasSize(
                 mass=mass.name,
                 leaf=leaf,
-                offset=-math.copysign(offset, mass.bias),
+                offset=round(-math.copysign(offset, mass.bias), 4),
                 bias=mass.bias,
-                self_stiffness=(leaf.own + 3.0 * leaf.quartic * offset**2) / law.stiffness_unit,
-                quartic=leaf.quartic * scale,
+                self_stiffness=trim((leaf.own + 3.0 * leaf.quartic * offset**2) / law.stiffness_unit),
+                quartic=trim(leaf.quartic * scale),
             )
         )
     return tuple(result)
 
 
 def _preload(stiffness: float, quartic: float, force: float) -> float:
-    """The offset d at which stiffness d + quartic d^3 = force, by Newton's method (the left side is convex in d > 0)."""
+    """The offset d at which stiffness d + quartic d^3 = force, by Newton's method (convex in d > 0)."""
     offset = force / stiffness
     for _ in range(50):
         excess = stiffness * offset + quartic * offset**3 - force
@@ -193,9 +194,7 @@ def _preload(stiffness: float, quartic: float, force: float) -> float:
     return offset
 
 
-def _self_terms(
-    network: Network, couplers: tuple[CouplerSize, ...], biases: tuple[BiasSize, ...]
-) -> dict[str, float]:
+def _self_terms(network: Network, couplers: tuple[CouplerSize, ...], biases: tuple[BiasSize, ...]) -> dict[str, float]:
     """Sum of the self terms of the parts that are built at every mass, in units of S0."""
     total = {mass.name: 0.0 for mass in network.masses}
     for coupling, coupler in zip(network.couplings, couplers, strict=True):
@@ -214,8 +213,8 @@ def _unit(mass: Mass, absorbed: float, peak: float, process: Process, law: UnitL
         mass=mass.name,
         phase=mass.phase,
         compensation_network=mass.compensation,
-        compensation=-absorbed,
-        preload=law.stroke_per_k * (process.unit.kappa0 - own),
+        compensation=trim(0.0 - absorbed),
+        preload=round(law.stroke_per_k * (process.unit.kappa0 - own), 4),
         amplitude=amplitude,
         strain=beam_strain(process, amplitude),
     )
@@ -236,9 +235,9 @@ def _rules(
     hub_half = pin.hub_gap / 2.0 + pin.side + 2.0 * pin.wall
     clock_throw = _up(law.stroke_per_k * max(abs(mass.k1) for mass in network.masses))
     overrun = max(0.0, clock_throw - min(item.preload for item in units))
-    left = _up(hub_half + unit.span + unit.rib_width)
+    left = _up(hub_half + unit.span + pin.wall + unit.rib_width)  # pin.wall: the anchor that joins the beams
     right = _up(hub_half + unit.span + series.reach + overrun + link.gap)
-    reach = {item.coupling: _up(hub_half + item.leaf.reach) for item in couplers}
+    reach = {item.coupling: round(hub_half + item.leaf.reach, 6) for item in couplers}
     track = link.bar_width + link.gap
     channel = max(reach.values(), default=0.0) + hub_half + link.gap + link.bar_width
     return LayoutRules(
@@ -258,7 +257,7 @@ def _rules(
         hub_height=law.shuttle_height,
         track_pitch=track,
         couplers=reach,
-        biases={item.mass: _up(hub_half + item.leaf.reach) for item in biases},
+        biases={item.mass: round(hub_half + item.leaf.reach, 6) for item in biases},
         post_radius=link.post_radius,
         post_offset={
             item.coupling: round(hub_half + item.leaf.reach / 2.0, 6)
@@ -292,11 +291,14 @@ def _findings(
             found.append(Finding(rule, subject, value, limit, message))
 
     machine, link = process.machine, process.link
-    limit = process.material(process.plates(PlateRole.UNIT)[0]).strain_limit
+    material = process.material(process.plates(PlateRole.UNIT)[0])
+    limit = material.strain_limit
     least("min_wall", "unit.beam", process.unit.beam_wall, machine.min_wall, "beams thinner than the machine makes")
     least("min_wall", "unit.series", series.wall, machine.min_wall, "series leaves thinner than the machine makes")
     least("min_gap", "link.gap", link.gap, machine.min_gap, "gap narrower than the machine makes")
-    most("strain", "unit.series", series.strain, limit, "series leaves strained if a clock peak finds a shuttle at 0")
+    most("strain", "unit.series", series.strain_settled, limit, "series leaves strained with settled shuttles")
+    peak = "series leaves strained if a clock peak finds a shuttle held at 0"
+    most("strain_peak", "unit.series", series.strain, material.strain_peak, peak)
     for unit in units:
         most("strain", f"unit.{unit.mass}", unit.strain, limit, "beams strained at the largest throw seen")
     for mass in network.masses:
@@ -317,7 +319,9 @@ def _findings(
     for coupling in network.couplings:
         if coupling.kind is not CouplingKind.LINEAR or coupling.d1 != 0.0:
             found.append(
-                Finding("clocked", f"coupler.{coupling.name}", coupling.d1, 0.0, "a clocked coupling has no passive part")
+                Finding(
+                    "clocked", f"coupler.{coupling.name}", coupling.d1, 0.0, "a clocked coupling has no passive part"
+                )
             )
     half = rules.row_pitch - rules.throw - rules.hub_height / 2.0 - rules.gap - rules.eye_radius
     for bias in biases:

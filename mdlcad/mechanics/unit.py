@@ -1,4 +1,4 @@
-"""The buckling-beam unit: from the template to its stiffnesses, its series spring and its clock stroke.
+"""The buckling-beam unit: from the template to its stiffnesses and its clock stroke.
 
 Symbols and derivations are in ``docs/mechanics.md``. Lengths in mm, forces in N, stiffness in N/mm.
 """
@@ -44,28 +44,6 @@ class UnitLaw:
     shuttle_tilt: float
 
 
-@dataclass(frozen=True, slots=True)
-class SeriesSpring:
-    """The leaves along y between the beams' end block and the clock block.
-
-    Attributes:
-        leaves: how many; length: mm, between the arms; wall: mm.
-        travel: largest bend, mm, at the worst of the clock with the shuttle held at x = 0.
-        strain: 3 wall travel / length^2 there; strain_settled: the same when the shuttle has buckled.
-        turn_stiffness: of the end block against rotation, N mm/rad.
-        reach: length in x of end block, leaves and clock block, mm.
-    """
-
-    leaves: int
-    length: float
-    wall: float
-    travel: float
-    strain: float
-    strain_settled: float
-    turn_stiffness: float
-    reach: float
-
-
 def unit_law(process: Process) -> UnitLaw:
     """The laws of the unit template.
 
@@ -90,7 +68,9 @@ def unit_law(process: Process) -> UnitLaw:
     inertia_z = unit.beam_wall * depth**3 / 12.0
     count = 2 * unit.beams
     lever = unit.pair_spacing / 2.0
-    spread = sum(((i / (unit.beams - 1) * 2.0 - 1.0) * lever) ** 2 for i in range(unit.beams)) if unit.beams > 1 else 0.0
+    spread = (
+        sum(((i / (unit.beams - 1) * 2.0 - 1.0) * lever) ** 2 for i in range(unit.beams)) if unit.beams > 1 else 0.0
+    )
     return UnitLaw(
         beam_stiffness=beam_stiffness,
         stiffness_unit=stiffness_unit,
@@ -104,43 +84,6 @@ def unit_law(process: Process) -> UnitLaw:
         shuttle_height=unit.pair_spacing + unit.beam_wall,
         shuttle_turn=2.0 * one_axial * spread + count * 4.0 * modulus * depth * unit.beam_wall**3 / 12.0 / unit.span,
         shuttle_tilt=2.0 * 12.0 * modulus * inertia_z / unit.span**3 * spread,
-    )
-
-
-def series_spring(process: Process, law: UnitLaw, row_pitch: float, k_least: float, self_most: float) -> SeriesSpring:
-    """Leaves that give k_s in the height a row leaves them.
-
-    The wall follows from the length: k_s = n E w wall^3 / length^3 (n guided leaves in parallel). The leaves run from
-    the end block's arm at the top of the row to the clock block's arm at its bottom, so they bend about the line of
-    the force and neither block wants to turn.
-
-    Args:
-        k_least: least stiffness k of any unit; self_most: largest sum of self terms that a unit's preload absorbs.
-    """
-    unit, link = process.unit, process.link
-    plate = process.plates(PlateRole.UNIT)[0]
-    modulus, depth = process.material(plate).modulus, plate.thickness
-    length = row_pitch - link.gap - 2.0 * unit.series_arm
-    wall = length * (law.series_stiffness / (unit.series_leaves * modulus * depth)) ** (1.0 / 3.0)
-    share = law.axial_stiffness / law.series_stiffness
-    travel = share * law.stroke_per_k * (unit.kappa0 - min(k_least, 0.0) + self_most)
-    settled = share * law.stroke_per_k * (unit.kappa0 + self_most)
-    spacing = wall + process.machine.min_gap
-    places = [(i - (unit.series_leaves - 1) / 2.0) * spacing for i in range(unit.series_leaves)]
-    return SeriesSpring(
-        leaves=unit.series_leaves,
-        length=length,
-        wall=wall,
-        travel=travel,
-        strain=3.0 * wall * travel / length**2,
-        strain_settled=3.0 * wall * settled / length**2,
-        turn_stiffness=modulus * depth * wall / length * sum(x * x for x in places),
-        reach=unit.block_width
-        + 2.0 * (process.machine.min_gap + travel)
-        + unit.series_leaves * wall
-        + (unit.series_leaves - 1) * process.machine.min_gap
-        + process.pin.side
-        + 2.0 * process.pin.wall,
     )
 
 

@@ -1,0 +1,150 @@
+"""The series spring k_s of a unit: leaves along y between the beams' end block and the clock block.
+
+A folded spring: from the stem of the end block, banks of leaves run up and down to a truss at the top and one at the
+bottom of the row, and from there banks of leaves run back to the stem of the clock block. It is symmetric about the
+line of the force, so that a push in x neither lifts nor turns the end block (leaves on one side only would do both).
+Stems and trusses bend too, so the whole is solved as a frame. Lengths in mm.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from scipy.optimize import brentq
+
+from mdlcad.errors import UsageError
+from mdlcad.mechanics.flexure import RIGID, Sheet
+from mdlcad.mechanics.frame import TURN, Beam, Frame, Spring, X, Y, dof
+from mdlcad.mechanics.process import PlateRole, Process
+from mdlcad.mechanics.unit import UnitLaw
+
+
+@dataclass(frozen=True, slots=True)
+class SeriesSpring:
+    """The series spring as cut and what it does.
+
+    Attributes:
+        leaves: in each of the four banks; length, wall: of a leaf; pitch: of the leaves in a bank.
+        arm: width of stems and trusses; height: half height of the row that the unit may fill.
+        clear_block: between end block and first leaf; clear: between the two stems (least gap and travel).
+        stiffness: N/mm, of the frame with this wall.
+        travel: largest bend, mm, at the worst of the clock with the shuttle held at x = 0.
+        strain: the largest there; strain_settled: the same when the shuttle has buckled.
+        turn_stiffness: N mm/rad, of the end block against turning.
+        reach: length in x of end block, leaves and clock block.
+    """
+
+    leaves: int
+    length: float
+    wall: float
+    pitch: float
+    arm: float
+    height: float
+    clear_block: float
+    clear: float
+    stiffness: float
+    travel: float
+    strain: float
+    strain_settled: float
+    turn_stiffness: float
+    reach: float
+
+
+def series_spring(process: Process, law: UnitLaw, row_pitch: float, k_least: float, self_most: float) -> SeriesSpring:
+    """Leaves that give k_s in the height a row leaves them; their wall is found by bisection.
+
+    Args:
+        k_least: least stiffness k of any unit; self_most: largest sum of self terms that a unit's preload absorbs.
+
+    Raises:
+        UsageError: the row is too low for leaves of that stiffness.
+    """
+    unit, gap = process.unit, process.machine.min_gap
+    height = (row_pitch - process.link.gap) / 2.0
+    share = law.axial_stiffness / law.series_stiffness
+    travel = share * law.stroke_per_k * (unit.kappa0 - min(k_least, 0.0) + self_most)
+    settled = share * law.stroke_per_k * (unit.kappa0 + self_most)
+    clear = round(math.ceil((gap + travel) / 0.01 - 1e-9) * 0.01, 6)
+
+    def excess(wall: float) -> float:
+        return _solve(process, law, wall, height, clear)[0] / law.series_stiffness - 1.0
+
+    low, high = 0.1, height / 2.0
+    if height <= 2.0 * unit.series_arm or excess(high) < 0.0 or excess(low) > 0.0:
+        raise UsageError(
+            f"process {process.name}: unit.series_leaves: no wall from {low} to {high:.2f} mm gives the series spring "
+            f"{law.series_stiffness:.2f} N/mm in a row of {row_pitch} mm; change series_leaves or series_arm"
+        )
+    wall = round(brentq(excess, low, high, xtol=1e-6), 3)
+    stiffness, strain, turning = _solve(process, law, wall, height, clear)
+    bank = unit.series_leaves * wall + (unit.series_leaves - 1) * gap
+    return SeriesSpring(
+        leaves=unit.series_leaves,
+        length=round(height - 1.5 * unit.series_arm, 6),
+        wall=wall,
+        pitch=round(wall + gap, 6),
+        arm=unit.series_arm,
+        height=round(height, 6),
+        clear_block=round(clear - gap / 2.0, 6),
+        clear=clear,
+        stiffness=round(stiffness, 6),
+        travel=round(travel, 6),
+        strain=round(strain * travel, 6),
+        strain_settled=round(strain * settled, 6),
+        turn_stiffness=round(turning, 4),
+        reach=round(
+            unit.block_width
+            + 2.0 * (clear - gap / 2.0)
+            + 2.0 * bank
+            + clear
+            + process.pin.side
+            + 2.0 * process.pin.wall,
+            6,
+        ),
+    )
+
+
+def _solve(process: Process, law: UnitLaw, wall: float, height: float, clear: float) -> tuple[float, float, float]:
+    """Stiffness (N/mm), strain per mm and turning stiffness of the end block (N mm/rad) of the spring's frame.
+
+    The end block is free to turn and to move in y against the beams it ends.
+    """
+    unit, gap = process.unit, process.machine.min_gap
+    plate = process.plates(PlateRole.UNIT)[0]
+    material = process.material(plate)
+    sheet = Sheet(material.modulus, plate.thickness, material.strain_limit)
+    truss_y, face, root = height - unit.series_arm / 2.0, height - unit.series_arm, unit.series_arm / 2.0
+    first = unit.block_width / 2.0 + clear - gap / 2.0 + wall / 2.0
+    near = [first + i * (wall + gap) for i in range(unit.series_leaves)]
+    far = [near[-1] + wall + clear + i * (wall + gap) for i in range(unit.series_leaves)]
+    nodes = [(0.0, 0.0)]
+    parts: list[tuple[Beam, float]] = []  # beams that may be strained, with their width
+    stiff: list[Beam] = []
+    stem = [0]
+    tops: dict[float, list[int]] = {1.0: [], -1.0: []}
+    for x in near + far:
+        centre = len(nodes)
+        nodes.append((x, 0.0))
+        if x != far[0]:
+            parts.append((sheet.beam(stem[-1], centre, unit.series_arm), unit.series_arm))
+        stem.append(centre)
+        for side, truss in tops.items():
+            foot = len(nodes)
+            nodes += [(x, side * root), (x, side * face), (x, side * truss_y)]
+            stiff += [sheet.beam(centre, foot, wall, RIGID), sheet.beam(foot + 1, foot + 2, wall, RIGID)]
+            parts.append((sheet.beam(foot, foot + 1, wall), wall))
+            if truss:
+                parts.append((sheet.beam(truss[-1], foot + 2, unit.series_arm), unit.series_arm))
+            truss.append(foot + 2)
+    # what the pair of beams holds the end block by (the shuttle at rest)
+    springs = [Spring(dof(0, Y), law.beam_stiffness / 2.0), Spring(dof(0, TURN), law.shuttle_turn / 2.0)]
+    frame = Frame(nodes, [beam for beam, _ in parts] + stiff, springs)
+    pin = [dof(stem[-1], i) for i in (X, Y, TURN)]
+    solution = frame.solve(dict.fromkeys(pin, 0.0) | {dof(0, X): 1.0})
+    strain = 0.0
+    for beam, width in parts:
+        moment = max(abs(value) for value in frame.end_moments(beam, solution))
+        strain = max(strain, moment * width / (2.0 * beam.bending))
+    turning = float(frame.condense([dof(0, TURN)], pin)[0, 0])
+    return float(solution.reactions[dof(0, X)]), strain, turning

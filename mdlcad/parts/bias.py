@@ -1,0 +1,62 @@
+"""A bias: a meander from a hub's block to a fixed post that stands off the row, so that the leaf is always bent."""
+
+from __future__ import annotations
+
+from shapely import Polygon
+
+from mdlcad.mechanics.leaves import LeafKind, chain_of, eye_radius
+from mdlcad.mechanics.sizing import BiasSize
+from mdlcad.parts import palette
+from mdlcad.parts.body import Body, BodyKind
+from mdlcad.parts.leaf import Path, deflected_path, hub_block, leaf_start, meander_path, outward, wall_strip
+from mdlcad.parts.shapes import cut, disc, join, only, square
+from mdlcad.parts.stack import FRAME_REF, Hub, Stack
+from mdlcad.parts.unit import hub_pin_x
+from mdlcad.routing.layout import BiasLeaf
+
+
+def bias_bodies(stack: Stack, hub: Hub, leaf: BiasLeaf, size: BiasSize) -> list[Body]:
+    """The bias leaf, cut straight and assembled bent, and its post.
+
+    Raises:
+        ValueError: the layout's post is neither on the row nor where sizing put it.
+    """
+    if min(abs(leaf.post_y - hub.y), abs(leaf.post_y - hub.y - size.offset)) > 1e-3:
+        raise ValueError(f"bias {leaf.mass}: its post is at y = {leaf.post_y}, sizing wants {hub.y + size.offset}")
+    rules, link = stack.sizing.rules, stack.process.link
+    shape, direction = size.leaf.shape, outward(leaf.side)
+    start = leaf_start(stack, hub, leaf.side)
+    chain = chain_of(LeafKind.BIAS, shape, stack.process)
+    straight = meander_path(shape, start, hub.y, direction)
+    bent = deflected_path(chain, 0.0, size.offset, start, hub.y, direction)
+    x = start + direction * size.leaf.reach
+    post_y = round(hub.y + size.offset, 4)
+
+    def shape_of(path: Path, y: float) -> Polygon:
+        eye = disc(x, y, eye_radius(stack.process))
+        whole = join([hub_block(stack, hub, leaf.side), wall_strip([*path, (x, y)], shape.wall), eye])
+        pin = square(hub_pin_x(stack, hub, leaf.side), hub.y, rules.pin)
+        return only(cut(whole, [pin, disc(x, y, link.post_radius + link.post_fit)]))
+
+    return [
+        stack.sheet(
+            f"bias.{leaf.mass}",
+            BodyKind.BIAS,
+            leaf.plate,
+            shape_of(straight, hub.y),
+            (size.leaf.sweep, rules.throw),
+            (hub.ref, FRAME_REF),
+            palette.BIAS,
+            shape_of(bent, post_y),
+        ),
+        stack.upright(
+            f"post.bias.{leaf.mass}",
+            BodyKind.POST,
+            leaf.plate,
+            stack.cover_plate,
+            disc(x, post_y, link.post_radius),
+            (0.0, 0.0),
+            FRAME_REF,
+            palette.POST,
+        ),
+    ]

@@ -1,0 +1,61 @@
+"""Polygons of meander flexures, as cut and as deflected, in the device's own axes."""
+
+from __future__ import annotations
+
+import numpy as np
+from shapely import Polygon
+
+from mdlcad.mechanics.flexure import Chain, Meander, deflect
+from mdlcad.parts.body import Body
+from mdlcad.parts.shapes import box, strip
+from mdlcad.parts.stack import Hub, Stack
+from mdlcad.routing.layout import Side
+
+Path = list[tuple[float, float]]
+
+_AT = np.linspace(0.0, 1.0, 5)
+
+
+def hub_block(stack: Stack, hub: Hub, side: Side) -> Polygon:
+    """The block of one side of a hub on a rung plate (without its pin hole)."""
+    rules = stack.sizing.rules
+    inner, outer = rules.hub_gap / 2.0, rules.hub_half
+    half = rules.hub_height / 2.0
+    if side is Side.LEFT:
+        return box(hub.x - outer, hub.y - half, hub.x - inner, hub.y + half)
+    return box(hub.x + inner, hub.y - half, hub.x + outer, hub.y + half)
+
+
+def outward(side: Side) -> float:
+    """+1 if a side looks at higher x, else -1."""
+    return -1.0 if side is Side.LEFT else 1.0
+
+
+def leaf_start(stack: Stack, hub: Hub, side: Side) -> float:
+    """x of the outer face of a hub block, where flexures begin."""
+    return hub.x + outward(side) * stack.sizing.rules.hub_half
+
+
+def meander_path(meander: Meander, x: float, y: float, direction: float) -> Path:
+    """Centre line as cut, from (x, y) along +x or -x."""
+    return [(x + direction * u, y + v) for u, v in meander.path()]
+
+
+def deflected_path(chain: Chain, left: float, right: float, x: float, y: float, direction: float) -> Path:
+    """Centre line of the flexible beams with the ends of the flexure displaced in y, from (x, y) along +x or -x."""
+    solution = deflect(chain, left, right)
+    points: Path = []
+    for beam in chain.frame.beams[: chain.flexible]:
+        for u, v in chain.frame.deformed(beam, solution, _AT)[0][0 if not points else 1 :]:
+            points.append((x + direction * float(u), y + float(v)))
+    return points
+
+
+def wall_strip(path: Path, wall: float) -> Polygon:
+    """The wall along a centre line."""
+    return strip(path, wall)
+
+
+def occupied(body: Body) -> Polygon:
+    """Where a body is in the assembled device."""
+    return body.section if body.assembled is None else body.assembled
