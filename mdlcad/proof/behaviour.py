@@ -36,7 +36,7 @@ class Behaviour(Protocol):
             inputs: uint8[n, I].
 
         Returns:
-            uint8[n, S], the registers after the tick, and uint8[n, O], the outputs *before* it: what the
-            combinational logic makes of ``states`` and ``inputs``.
+            uint8[n, S], the registers after the tick, and uint8[n, O], what the combinational logic makes of
+            ``states`` and ``inputs`` (of the state *before* the tick).
         """
         ...

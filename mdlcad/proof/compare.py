@@ -24,7 +24,7 @@ class Comparison:
     Attributes:
         registers: names of the state bits that have a mass; places of those bits in the reference's state.
         states: uint8[D + 1, r, L] and outputs: uint8[D, O, L], as read (2: neither 0 nor 1).
-        ticks: bool[D, L], the tick came when it should, and only then, up to and during each decision.
+        ticks: bool[D, L], the tick came when it should, and only then, in each decision.
         wrong: int[L], first wrong decision of each lane, D if there is none.
         margin, margin_mass: smallest |x| at a read-out and its mass.
         peak: float[n], largest |x| of each mass.
@@ -51,11 +51,7 @@ def compare(
     steps_per_period: int,
     workers: int,
 ) -> Comparison:
-    """Simulate ``itinerary`` on the network and compare. The names of bits must agree (``prove`` checks them).
-
-    Raises:
-        NoTick: the first tick is too early to read the masses.
-    """
+    """Simulate ``itinerary`` on the network and compare. The names of bits must agree (``prove`` checks them)."""
     decisions, lanes, _ = itinerary.inputs.shape
     registers = tuple((register.bit, reference.state.index(register.bit)) for register in network.registers)
     state_masses = [system.index(register.mass) for register in network.registers]
@@ -68,50 +64,59 @@ def compare(
     taker = {port.bit: port.mass for port in network.sensors}
     sensors = np.array([system.index(taker[bit]) for bit in reference.inputs], dtype=np.int64)
     drive = sensor_force * (2.0 * itinerary.inputs.transpose(0, 2, 1) - 1.0) * system.polarity[sensors][:, None]
-    stimulus = Stimulus(sensors, np.ascontiguousarray(drive), timing.first_steps, timing.interval_steps)
-    # of every decision and after the last, each mass in its own cycle
-    cycle = timing.reading_cycle(instant) + timing.period * np.arange(decisions + 1)[:, None]
-    cycles = timing.first_cycle + decisions * timing.period + 1
+    span = timing.period * steps_per_period
+    cycles = decisions * timing.period + timing.tick_cycle + 1
     run = simulate(
         system,
-        stimulus,
+        Stimulus(sensors, np.ascontiguousarray(drive), span, span),
         cycles * steps_per_period,
         watch=Watch(masses, instant),
         steps_per_period=steps_per_period,
         workers=workers,
     )
 
-    x = run.readings[cycle, np.arange(len(masses))]
-    bits = decode(system, masses, x)
     r, o = len(state_masses), len(output_masses)
-    states, outputs = bits[:, :r], bits[:-1, r : r + o]
+    begin = timing.period * np.arange(decisions + 1)[:, None]
+    state_cycle = timing.state_cycle(instant[:r]) + begin
+    output_cycle = begin[:-1] + timing.period - 1
+    state_x = run.readings[np.maximum(state_cycle, 0), np.arange(r)]
+    output_x = run.readings[output_cycle, np.arange(r, r + o)]
+    states = decode(system, masses[:r], state_x)
+    outputs = decode(system, masses[r : r + o], output_x)
     ticks = np.ones((decisions, lanes), dtype=bool)
     if tick_masses:
         seen = decode(system, np.array(tick_masses), run.readings[:, r + o :])[:, 0]
         ticks = _ticks_right(seen, timing, decisions)
 
     expected_states = itinerary.states.transpose(0, 2, 1)[:, [place for _, place in registers]]
+    states = np.where(state_cycle[:, :, None] < 0, expected_states, states)
     state_right = (states == expected_states).all(axis=1)
     output_right = (outputs == itinerary.outputs.transpose(0, 2, 1)).all(axis=1)
     right = state_right[:-1] & state_right[1:] & output_right & ticks
     wrong = np.where(right.all(axis=0), decisions, np.argmin(right, axis=0))
 
-    distance = np.nan_to_num(np.abs(x[:decisions]), nan=0.0, posinf=0.0).min(axis=(0, 2))
-    weakest = int(np.argmin(distance))
+    read = np.concatenate([state_x[1:], output_x], axis=1)
+    distance = np.nan_to_num(np.abs(read), nan=0.0, posinf=0.0).min(axis=(0, 2))
+    weakest = int(np.argmin(distance)) if len(distance) else -1
     peak = np.nan_to_num(run.peak, nan=np.finfo(float).max).max(axis=1)
-    margin_mass = system.names[masses[weakest]]
-    return Comparison(registers, states, outputs, ticks, wrong, float(distance[weakest]), margin_mass, peak)
+    return Comparison(
+        registers=registers,
+        states=states,
+        outputs=outputs,
+        ticks=ticks,
+        wrong=wrong,
+        margin=float(distance[weakest]) if len(distance) else 0.0,
+        margin_mass=system.names[masses[weakest]] if len(distance) else "",
+        peak=peak,
+    )
 
 
 def _ticks_right(seen: Bits, timing: Timing, decisions: int) -> NDArray[np.bool_]:
-    """bool[D, L] from the tick mass's bits uint8[cycles, L]; decision d answers for the cycles up to tick d + 1."""
-    cycle = np.arange(len(seen))
-    due = (cycle - timing.first_cycle) % timing.period == 0
-    right = seen == due[:, None]
-    owner = np.clip(-(-(cycle - timing.first_cycle) // timing.period) - 1, 0, decisions - 1)
-    ticks = np.ones((decisions, seen.shape[1]), dtype=bool)
-    np.logical_and.at(ticks, owner, right)
-    return ticks
+    """bool[D, L] from the tick mass's bits uint8[cycles, L]: each decision has its tick, in its cycle, and no other."""
+    due = np.arange(timing.period) == timing.tick_cycle
+    whole = seen[: decisions * timing.period].reshape(decisions, timing.period, -1)
+    right: NDArray[np.bool_] = (whole == due[:, None]).all(axis=1)
+    return right
 
 
 def describe(

@@ -32,7 +32,7 @@ class Itinerary:
     Attributes:
         inputs: uint8[D, L, I].
         states: uint8[D + 1, L, S], the reference before each decision and after the last.
-        outputs: uint8[D, L, O], the reference's outputs of each decision.
+        outputs: uint8[D, L, O], what the reference makes of the inputs of each decision and the state after it.
         total, unreachable, exhaustive, reachable_states: as in ``Proof``.
         method: in words.
     """
@@ -61,7 +61,9 @@ def make_itinerary(reference: Behaviour, decisions: int, seed: int) -> Itinerary
     outputs = np.empty((length, len(walks), len(reference.outputs)), np.uint8)
     states[0] = reference.initial
     for d in range(length):
-        states[d + 1], outputs[d] = reference.step(states[d], inputs[d])
+        states[d + 1], _ = reference.step(states[d], inputs[d])
+        # read at the end of the decision: the registers have changed, the inputs have not
+        _, outputs[d] = reference.step(states[d + 1], inputs[d])
 
     bits = len(reference.state) + len(reference.inputs)
     known = len(graph.states) if reference.state else 1

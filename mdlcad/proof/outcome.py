@@ -44,7 +44,7 @@ class Proof:
         first_mismatches: the first few.
         reachable_states, states_visited: states of the reference that can be reached (those known), that were met.
         decisions, lanes: decisions simulated (all lanes together), independent runs from power-up.
-        tick_cycle: clock cycle of the first tick, found by simulation (cycle of the first reading without a tick).
+        tick_cycle: clock cycle within each decision in which the tick comes, found by simulation (-1: there is none).
         cycles_per_tick, steps_per_period, sensor_force, seed: how it was done.
         margin, margin_mass: smallest |x| at any read-out, and of which mass.
         peaks: largest |x| over all lanes and all time, by mass.

@@ -49,7 +49,8 @@ def prove(
     _check_names(network, reference)
     itinerary = make_itinerary(reference, decisions, seed)
     length, lanes, _ = itinerary.inputs.shape
-    checked = visited = mismatches = simulated = tick_cycle = 0
+    checked = visited = mismatches = simulated = 0
+    tick_cycle = -1
     first: tuple[Mismatch, ...] = ()
     margin, margin_mass, peaks = 0.0, "", dict[str, float]()
     try:
@@ -72,7 +73,7 @@ def prove(
         bad.sort(key=lambda lane: (int(comparison.wrong[lane]), lane))
         first = tuple(describe(reference, itinerary, comparison, network.tick, lane) for lane in bad[:_REPORTED])
         checked, visited = _count(itinerary, np.minimum(comparison.wrong + 1, length))
-        mismatches, simulated, tick_cycle = len(bad), length * lanes, timing.first_cycle
+        mismatches, simulated, tick_cycle = len(bad), length * lanes, timing.tick_cycle
         margin, margin_mass = comparison.margin, comparison.margin_mass
         peaks = dict(zip(system.names, map(float, comparison.peak), strict=True))
 

@@ -64,10 +64,12 @@ class Draft:
         return f"in {bit}"
 
     def clock(self) -> None:
-        """A ring of 3 N masses; the token starts on the first mass of phase 2, so the first tick is in cycle N - 2."""
+        """A ring of 3 N masses. The token is placed so that registers change in cycle 2 of a decision (1 if N = 2)."""
         size = 3 * self.cycles
+        tick_cycle = min(1, self.cycles - 2)
+        token = size - 1 - 3 * (tick_cycle + 1)
         for i in range(size):
-            self.gate(f"ring{i}", i % 3, f"ring{(i - 1) % size}", value=i == 2)
+            self.gate(f"ring{i}", i % 3, f"ring{(i - 1) % size}", value=i == token)
         self.tick = f"ring{size - 1}"
 
     def register(self, bit: str, data: str, value: bool = False) -> str:
@@ -104,8 +106,8 @@ class Draft:
 
 
 def toggle() -> tuple[Network, Machine]:
-    """One bit that flips when EN is 1; OUT shows it, NEXT (a Mealy output) what it is about to be."""
-    draft = Draft("toggle", 3)
+    """One bit that flips when EN is 1; OUT shows it, NEXT (a Mealy output) what EN would make of it."""
+    draft = Draft("toggle", 4)
     enable = draft.sensor("EN[0]")
     draft.clock()
     q = draft.gate("q now", 0, "q T[0]")
@@ -124,7 +126,7 @@ def toggle() -> tuple[Network, Machine]:
 
 def walker() -> tuple[Network, Machine]:
     """Two bits: A takes X, B takes (A and not Y); starts at A = 0, B = 1. W is (X and Y) or (A and B)."""
-    draft = Draft("walker", 3)
+    draft = Draft("walker", 4)
     x, y = draft.sensor("X[0]"), draft.sensor("Y[0]")
     draft.clock()
     x2 = draft.gate("x2", 2, draft.gate("x1", 1, x))
