@@ -84,7 +84,9 @@ def _refusal(lexeme: Lexeme) -> tuple[str, str] | None:
             consequence, hint = _REFUSED_DIRECTIVES[lexeme.text]
             return f"'{name}' {consequence}", hint
         case LexemeKind.DIRECTIVE if lexeme.text == "`":
-            return "a '`' without a word", "write the directive or macro right behind it, and join no words with '``'"
+            return "a '`' without a word", "write the directive or macro right behind it"
+        case LexemeKind.DIRECTIVE if lexeme.text.startswith("``"):
+            return "'``' would join two words", "write the joined word itself"
         case LexemeKind.WORD if lexeme.text == "import":
             return "'import' would run code from outside the program", "write the function in Verilog"
         case LexemeKind.ESCAPED if any(char in lexeme.text for char in '$`"/'):

@@ -100,7 +100,7 @@ def _hint(found: Token, construct: str, expected: list[str]) -> str:
         return 'texts take straight double quotes: "..."'
     if found.type == "STRAY" and not found.isascii():
         return "outside comments and texts only plain ASCII characters are allowed"
-    if found.type == "STRAY" and found == "-" and "a name" not in expected:
+    if found.startswith("-") and not {"a name", "a number"} & set(expected):
         return "names are made of letters, digits and '_'"
     if found.type == "NAME":
         keywords = [word.strip("'") for word in expected if word.startswith("'") and word[1].isalpha()]

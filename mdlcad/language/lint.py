@@ -152,7 +152,7 @@ def _check_places(source: Source, program: Program) -> Iterator[Diagnostic]:
                 yield source.error(place.position.where, message, hint)
             index = numbers.get(place.line.text)
             if index is None:
-                if boundary and not program.broken:
+                if known and not program.broken:
                     yield _unknown_line(source, place, known)
                 continue
             if position is None:
@@ -170,5 +170,5 @@ def _check_places(source: Source, program: Program) -> Iterator[Diagnostic]:
 
 def _unknown_line(source: Source, place: WrittenPlace, known: list[str]) -> Diagnostic:
     listed = ", ".join(known[:8]) + (", ..." if len(known) > 8 else "")
-    hint = nearest(place.line.text, known, f"the lines are {listed}" if known else "the boundary has no lines")
+    hint = nearest(place.line.text, known, f"the lines are {listed}")
     return source.error(place.line.where, f"the boundary has no line '{shown(place.line.text)}'", hint)

@@ -40,8 +40,8 @@ def parse_device(text: str, file: str) -> Device:
 def _device(source: Source) -> Device:
     sections = cut(source)
     program, findings = parse_declarations(source, sections.declarations_end)
-    findings += islice(check_program(source, program, sections), _MOST_FINDINGS)
-    findings += islice(check_verilog(source, sections), _MOST_FINDINGS)
+    findings += islice(check_program(source, program, sections), _MOST_FINDINGS + 1)
+    findings += islice(check_verilog(source, sections), _MOST_FINDINGS + 1)
     findings += sections.findings
     if findings:
         raise InputError(_first(source, sorted(findings)))

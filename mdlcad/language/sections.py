@@ -17,13 +17,13 @@ _LEXEME = re.compile(
     | (?P<text> "(?:[^"\\\n]|\\[^\n])*" )
     | (?P<open_text> "[^\n]* )
     | (?P<escaped> \\\S+ )
-    | (?P<directive> `[A-Za-z0-9_$]* )
+    | (?P<directive> `+[A-Za-z0-9_$]* )
     | (?P<system> \$[A-Za-z0-9_$]* )
     | (?P<word> [A-Za-z_][A-Za-z0-9_$]* )
     | (?P<number> [0-9][A-Za-z0-9_$]* )
     | (?P<attribute> \(\*(?!\)) )
     | (?P<semicolon> ; )
-    | (?P<other> \S )
+    | (?P<other> (?: [^\s\w"/\\`$(;] | \((?!\*) )+ | \S )
     """,
     re.VERBOSE,
 )
@@ -44,6 +44,9 @@ class LexemeKind(StrEnum):
     ATTRIBUTE = "attribute"
     SEMICOLON = "semicolon"
     OTHER = "other"
+
+
+_KINDS: dict[str | None, LexemeKind] = {kind.value: kind for kind in LexemeKind}
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,7 +96,7 @@ def cut(source: Source) -> Sections:
 
 def _lexemes(text: str) -> Iterator[Lexeme]:
     for match in _LEXEME.finditer(text):
-        kind = LexemeKind(match.lastgroup or "other")
+        kind = _KINDS[match.lastgroup]
         if kind is not LexemeKind.COMMENT:
             yield Lexeme(kind, match.group(), match.start())
 

@@ -1,0 +1,130 @@
+"""Whatever the input is, it ends in a device or in an ``InputError``, and soon."""
+
+from __future__ import annotations
+
+import contextlib
+import random
+import time
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from mdlcad.artefact import from_json, to_json
+from mdlcad.errors import InputError
+from mdlcad.language import Device, parse_device, read_device
+from mdlcad.language.source import LIMIT_BYTES
+from tests.language.good import GOOD
+
+PIECES = [
+    "mechanicalmodule", "endmechanicalmodule", "boundary", "sensor", "actuator", "module", "endmodule", "line", "type",
+    "location", "values", "{", "}", "(", ")", ",", ";", ":", "=", '"', "//", "/*", "*/", "\n", "\\", "`", "$", "0b1",
+    "1e999", "-", "0.5", "é", "\0", "\u2028", "\r", "(*", "`define X(", "`define", "`include", "import", "$readmemh",
+    "a", "clk", "9" * 30,
+]  # fmt: skip
+
+
+def parse_or_refuse(text: str) -> None:
+    try:
+        device = parse_device(text, "x.mdl")
+    except InputError as error:
+        assert error.diagnostics
+        lines = text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n").split("\n")
+        for finding in error.diagnostics:
+            assert 1 <= finding.line <= len(lines)
+            assert 1 <= finding.column <= len(lines[finding.line - 1]) + 1
+            assert all(line.isprintable() for line in str(finding).split("\n"))
+    else:
+        assert from_json(to_json(device), Device) == device
+
+
+@settings(max_examples=300, deadline=None)
+@given(st.text(alphabet=st.characters(), max_size=200))
+def test_any_text(text: str) -> None:
+    parse_or_refuse(text)
+
+
+@settings(max_examples=300, deadline=None)
+@given(st.lists(st.sampled_from(PIECES), max_size=60), st.sampled_from(["", " "]))
+def test_pieces_of_the_language_in_any_order(pieces: list[str], joint: str) -> None:
+    parse_or_refuse(joint.join(pieces))
+
+
+@settings(max_examples=500, deadline=None)
+@given(
+    st.lists(
+        st.tuples(st.integers(0, len(GOOD)), st.integers(0, 12), st.sampled_from(["", *PIECES]) | st.text(max_size=3)),
+        min_size=1,
+        max_size=3,
+    )
+)
+def test_a_right_program_with_mistakes(edits: list[tuple[int, int, str]]) -> None:
+    text = GOOD
+    for start, length, piece in edits:
+        text = text[:start] + piece + text[start + length :]
+    parse_or_refuse(text)
+
+
+def test_half_of_a_character_pair() -> None:
+    with pytest.raises(InputError) as caught:
+        parse_device(GOOD.replace('"off"', '"o\ud800"'), "x.mdl")
+    assert [(item.line, item.column) for item in caught.value.diagnostics] == [(8, 54)]
+
+
+@pytest.mark.parametrize("size", [0, 1, 1000, LIMIT_BYTES, 5_000_000])
+def test_random_bytes(size: int, tmp_path: Path) -> None:
+    path = tmp_path / "x.mdl"
+    path.write_bytes(random.Random(size).randbytes(size))
+    started = time.process_time()
+    with pytest.raises(InputError):
+        read_device(path)
+    assert time.process_time() - started < 5
+
+
+def test_the_size_limit(tmp_path: Path) -> None:
+    path = tmp_path / "x.mdl"
+    path.write_text(GOOD + " " * (LIMIT_BYTES - len(GOOD)))
+    assert read_device(path).name == "m"
+    path.write_text(GOOD + " " * (LIMIT_BYTES - len(GOOD) + 1))
+    for read in (lambda: read_device(path), lambda: parse_device(path.read_text(), "x.mdl")):
+        with pytest.raises(InputError, match="the file is larger than 500 kB"):
+            read()
+
+
+HEADER = "mechanicalmodule m();"
+
+
+BEGINNINGS = {
+    "": ["x", "{", "(", "/*", "\\", "`", "$x ", "\n", "module ", "sensor ", "(*", "endmodule ", '"', '"0b1":'],
+    "/*": ["*"],
+    HEADER: ["boundary {", "sensor s {};", "module m; $fopen `X ", "endmechanicalmodule "],
+    HEADER + "boundary {": ["line a {(0,0),(0,1)},"],
+    HEADER + "sensor s {": ["location = {(a, 0.1)},"],
+    HEADER + "sensor s { location = {": ["(a, 0.1),"],
+    HEADER + "sensor s { values = {": ['"0b1": "x",'],
+}
+
+
+@pytest.mark.parametrize(("start", "piece"), [(start, piece) for start in BEGINNINGS for piece in BEGINNINGS[start]])
+def test_long_and_deep_input_ends_soon(start: str, piece: str) -> None:
+    text = start + piece * ((LIMIT_BYTES - len(start)) // len(piece))
+    started = time.process_time()
+    with pytest.raises(InputError) as caught:
+        parse_device(text, "x.mdl")
+    assert time.process_time() - started < 5
+    assert len(caught.value.diagnostics) <= 101
+
+
+def test_a_boundary_of_many_lines_ends_soon() -> None:
+    # a comb of 1000 teeth, whose every pair of lines is looked at
+    points = [(x, 9 if x % 2 else 8) for x in range(0, 999)] + [(998, 0)]
+    lines = ",".join(
+        f"line l{index} {{{first},{second}}}"
+        for index, (first, second) in enumerate(zip(points, points[1:] + points[:1], strict=True))
+    )
+    text = GOOD[: GOOD.index("{") + 1] + lines + GOOD[GOOD.index("\n};\nsensor") :]
+    started = time.process_time()
+    with contextlib.suppress(InputError):
+        parse_device(text.replace("(a,", "(l0,").replace("(c,", "(l1,"), "x.mdl")
+    assert time.process_time() - started < 5
