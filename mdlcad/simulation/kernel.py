@@ -19,15 +19,16 @@ import numpy as np
 
 BLOCK = 16
 
-_SLOTS = 9
+_SLOTS = 8
 
 
 def _build(width: int) -> Callable[..., None]:
     """Compile-time specialisation of the kernel for blocks of ``width`` lanes."""
-    row = np.uint64(_SLOTS * width)
-    # Places in a mass's row of the workspace: state, stage state, sums of slopes, force, largest |x| so far.
-    at_x, at_v, at_xs, at_vs, at_sx, at_sv, at_f, at_peak = (np.uint64(slot * width) for slot in range(8))
     u64 = np.uint64
+    # A block keeps all numbers of a mass together; a single lane keeps each kind of number together, so that SIMD can
+    # go over the masses instead.
+    single = width == 1
+    row = u64(1 if single else _SLOTS * width)
 
     def kernel(
         lane0: int,
@@ -72,6 +73,10 @@ def _build(width: int) -> Callable[..., None]:
         n = x.shape[0]
         points = waves.shape[0]
         period_steps = points // 2
+        slot = u64(n) if single else u64(width)
+        # Places in the workspace: state, stage state, sums of slopes, force, largest |x| so far.
+        at_x, at_v, at_xs, at_vs = u64(0), slot, u64(2) * slot, u64(3) * slot
+        at_sx, at_sv, at_f, at_peak = u64(4) * slot, u64(5) * slot, u64(6) * slot, u64(7) * slot
         work = np.zeros(n * _SLOTS * width)
         for i in range(n):
             o = u64(i) * row
