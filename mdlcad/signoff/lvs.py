@@ -52,6 +52,8 @@ class Recovered:
 
 def contacts(bodies: Sequence[ReadBody]) -> list[tuple[int, int]]:
     """Pairs of bodies that touch: sections within CONTACT_MM where their extents in z overlap."""
+    if not bodies:
+        return []
     tree = shapely.STRtree([body.section for body in bodies])
     left, right = tree.query([body.section for body in bodies], predicate="dwithin", distance=CONTACT_MM)
     pairs = []

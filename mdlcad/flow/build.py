@@ -1,0 +1,145 @@
+"""Run the pipeline into a folder that is whole or is not there."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from mdlcad import __version__
+from mdlcad.artefact import checksum, to_json, write_atomic
+from mdlcad.errors import SignoffError, UsageError
+from mdlcad.flow.folder import REPORT, load, new_folder
+from mdlcad.flow.result import failures, make_report
+from mdlcad.flow.state import Job, State, need
+from mdlcad.flow.steps import STEPS, Step
+from mdlcad.language import Device
+from mdlcad.mapping import load_library
+from mdlcad.mechanics import Sizing, load_process
+from mdlcad.network.model import Network
+from mdlcad.placement.placement import Placement
+from mdlcad.proof.outcome import Proof
+from mdlcad.report.report import StageRecord
+from mdlcad.routing.layout import Layout
+from mdlcad.synthesis.netlist import Netlist
+
+# What ``--from`` can take from a folder instead of making it.
+_LOADED: dict[str, type] = {
+    "device": Device,
+    "netlist": Netlist,
+    "network": Network,
+    "proof": Proof,
+    "sizing": Sizing,
+    "placement": Placement,
+    "layout": Layout,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Request:
+    """A build as the command line asks for it; ``first`` and ``last`` are names of steps."""
+
+    source: Path
+    place: Path | None
+    cells: str
+    process: str
+    seed: int
+    first: str | None
+    last: str | None
+    workers: int
+
+
+def build(request: Request, say: Callable[[str], None]) -> tuple[Path, list[str]]:
+    """Build into a folder; the folder, and what does not hold in it, in words (empty: all holds).
+
+    Raises:
+        InputError, UsageError: the program or the request cannot be used; nothing was written.
+        SignoffError: a stage does not hold and nothing worth keeping was made; nothing was written.
+    """
+    steps, loaded = _chosen(request.first, request.last)
+    library, process = load_library(request.cells), load_process(request.process)
+    state, old = State(), request.place
+    source: Path | None = request.source
+    if loaded:
+        old = old or request.source
+        state = _load(old, loaded)
+        source = None
+        name = need(state.device).name
+    else:
+        name = _design_name(request.source)
+    place = request.place or (old if loaded and old else Path("exports") / name)
+    records: list[StageRecord] = []
+    with new_folder(place) as folder:
+        job = Job(source, library, process, request.seed, folder, request.workers)
+        for step in STEPS[: len(loaded)]:
+            if step.artefact is not None:
+                data = step.artefact(state)
+                write_atomic(folder / f"{step.name}.json", data)
+                records.append(StageRecord(step.name, 0.0, checksum(data)))
+        for step in steps:
+            state, record = _run(step, job, state, say)
+            records.append(record)
+        report = make_report(state, job, tuple(records), __version__)
+        write_atomic(folder / REPORT, to_json(report))
+    return place, failures(state)
+
+
+def _design_name(source: Path) -> str:
+    from mdlcad.language import read_device
+
+    return read_device(source).name
+
+
+def _chosen(first: str | None, last: str | None) -> tuple[tuple[Step, ...], tuple[Step, ...]]:
+    """The steps to run and the steps whose artefacts are loaded instead."""
+    names = [step.name for step in STEPS]
+    for flag, name in (("--from", first), ("--to", last)):
+        if name is not None and name not in names:
+            raise UsageError(f"{flag} {name}: no such stage; the stages are {', '.join(names)}")
+    start = names.index(first) if first else 0
+    stop = names.index(last) + 1 if last else len(STEPS)
+    if start >= stop:
+        raise UsageError(f"--from {first} comes after --to {last}: nothing to do")
+    for step in STEPS[:start]:
+        if step.name not in _LOADED:
+            latest = [name for name in names if name in _LOADED][-1]
+            raise UsageError(f"--from {first}: a build can start again from any stage up to the one after {latest}")
+    return STEPS[start:stop], STEPS[:start]
+
+
+def _load(folder: Path, steps: tuple[Step, ...]) -> State:
+    if not folder.is_dir():
+        raise UsageError(f"{folder}: no such build folder; --from needs one")
+    return replace(State(), **{step.name: load(folder, f"{step.name}.json", _LOADED[step.name]) for step in steps})
+
+
+def _run(step: Step, job: Job, state: State, say: Callable[[str], None]) -> tuple[State, StageRecord]:
+    began = time.perf_counter()
+
+    def progress(words: str) -> None:
+        if sys.stderr.isatty():
+            sys.stderr.write(f"\r\033[K  {step.name}: {words}")
+            sys.stderr.flush()
+
+    progress("...")
+    before = set(state.files)
+    try:
+        state = step.run(job, state, progress)
+    except SignoffError as problem:
+        raise SignoffError(f"{step.name}: {problem}") from problem
+    finally:
+        if sys.stderr.isatty():
+            sys.stderr.write("\r\033[K")
+    if step.artefact is not None:
+        data = step.artefact(state)
+        digest = checksum(data)
+        if step.stored:
+            write_atomic(job.folder / f"{step.name}.json", data)
+    else:
+        fresh = sorted(set(state.files) - before)
+        digest = checksum("".join(f"{name} {checksum((job.folder / name).read_bytes())}\n" for name in fresh).encode())
+    seconds = time.perf_counter() - began
+    say(f"{step.name:<11} {step.summary(state):<78} {seconds:7.2f} s  {digest[:12]}")
+    return state, StageRecord(step.name, round(seconds, 3), digest)

@@ -1,0 +1,94 @@
+"""Build folders: filled beside their place, then moved there in one step; and read back."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TypeVar
+
+import msgspec
+
+from mdlcad.artefact import from_json
+from mdlcad.errors import UsageError
+
+T = TypeVar("T")
+REPORT = "report.json"
+_AT_FDCWD = -100
+_RENAME_EXCHANGE = 2
+
+
+@contextmanager
+def new_folder(place: Path) -> Iterator[Path]:
+    """A fresh folder beside ``place``; when the block ends well it takes that place, else it is removed.
+
+    Whoever looks at ``place``, also after a kill, sees the old folder or the new one, never a part. What a killed
+    build left beside it is removed by the next.
+
+    Raises:
+        UsageError: ``place`` is something that must not be replaced (a file, or a folder that is no build).
+    """
+    place = place.absolute()
+    if place.exists() and not place.is_dir():
+        raise UsageError(f"{place.name}: is a file; give a folder with -o")
+    if place.is_dir() and any(place.iterdir()) and not (place / REPORT).exists():
+        raise UsageError(f"{place.name}: is a folder that holds no build; give another with -o, or empty it")
+    place.parent.mkdir(parents=True, exist_ok=True)
+    _remove_abandoned(place)
+    fresh = place.parent / f".{place.name}.building-{os.getpid()}"
+    shutil.rmtree(fresh, ignore_errors=True)
+    fresh.mkdir()
+    try:
+        yield fresh
+        _take_place(fresh, place)
+    finally:
+        shutil.rmtree(fresh, ignore_errors=True)
+
+
+def _remove_abandoned(place: Path) -> None:
+    for left in place.parent.glob(f".{place.name}.building-*"):
+        owner = left.name.rpartition("-")[2]
+        if owner.isdigit() and not Path(f"/proc/{owner}").exists():
+            shutil.rmtree(left, ignore_errors=True)
+
+
+def _take_place(fresh: Path, place: Path) -> None:
+    if not place.exists():
+        fresh.rename(place)
+        return
+    if _exchange(fresh, place):
+        return  # the old folder is now where the fresh one was, and goes with it
+    old = fresh.with_name(fresh.name + ".old")
+    place.rename(old)
+    fresh.rename(place)
+    shutil.rmtree(old, ignore_errors=True)
+
+
+def _exchange(a: Path, b: Path) -> bool:
+    """Swap two folders in one system call; False where the system has no such call."""
+    call = getattr(ctypes.CDLL(None, use_errno=True), "renameat2", None)
+    if call is None:
+        return False
+    return bool(call(_AT_FDCWD, os.fsencode(a), _AT_FDCWD, os.fsencode(b), _RENAME_EXCHANGE) == 0)
+
+
+def load(folder: Path, name: str, kind: type[T]) -> T:
+    """The artefact ``name`` (a file name) of a build folder.
+
+    Raises:
+        UsageError: the file is missing, truncated, or not of the shape of ``kind``; the message names it.
+    """
+    path = folder / name
+    try:
+        return from_json(path.read_bytes(), kind)
+    except FileNotFoundError:
+        raise UsageError(f"{path}: is missing from the build; build it again") from None
+    except IsADirectoryError:
+        raise UsageError(f"{path}: is a folder where a file should be; build it again") from None
+    except msgspec.ValidationError as problem:
+        raise UsageError(f"{path}: does not have the shape of this artefact ({problem}); build it again") from None
+    except msgspec.DecodeError as problem:
+        raise UsageError(f"{path}: is not whole JSON ({problem}); build it again") from None

@@ -1,0 +1,51 @@
+"""From the state of a build to its report, and the verdict on it."""
+
+from __future__ import annotations
+
+from mdlcad.parts.plates import plates_of
+from mdlcad.flow.state import Job, State
+from mdlcad.report.make import behaviour_of, extent_of, hashes_of, mechanics_of
+from mdlcad.report.report import Lvs, Report, StageRecord
+
+
+def make_report(state: State, job: Job, records: tuple[StageRecord, ...], version: str) -> Report:
+    """The report of what has been made so far in ``job.folder``."""
+    network, bodies = state.network, state.bodies
+    return Report(
+        design=state.device.name if state.device else "",
+        cells=job.library.name,
+        process=job.process.name,
+        seed=job.seed,
+        version=version,
+        masses=len(network.masses) if network else None,
+        couplings=len(network.couplings) if network else None,
+        gates=len(state.netlist.gates) if state.netlist else None,
+        cycles_per_tick=network.cycles_per_tick if network else None,
+        period=network.dynamics.period if network else None,
+        behaviour=behaviour_of(state.proof),
+        extracted=behaviour_of(state.extracted),
+        lvs=Lvs(state.lvs.matched, state.lvs.differences) if state.lvs else None,
+        drc=state.rules.counts if state.rules else None,
+        mechanics=mechanics_of(state.sizing, state.carriers),
+        extent_mm=extent_of(bodies) if bodies else None,
+        plates=tuple(plates_of(bodies)) if bodies else (),
+        tiles=len(plates_of(bodies)) if bodies else None,
+        stages=records,
+        files=hashes_of(job.folder),
+    )
+
+
+def failures(state: State) -> list[str]:
+    """What does not hold in a build that got as far as its drawings, in words; empty if all holds."""
+    found = []
+    if state.rules is not None:
+        for item in state.rules.errors[:20]:
+            found.append(f"{item.rule} at ({item.x:.2f}, {item.y:.2f}): {', '.join(item.bodies)}: {item.message}")
+        if len(state.rules.errors) > 20:
+            found.append(f"and {len(state.rules.errors) - 20} more findings, see drc.json")
+    if state.lvs is not None and not state.lvs.matched:
+        found += [f"layout versus network: {words}" for words in state.lvs.differences[:20]]
+    if state.extracted is not None and not state.extracted.holds:
+        words = "; ".join(str(item) for item in state.extracted.first_mismatches[:3]) or "nothing was checked"
+        found.append(f"the device as drawn does not behave as the program says: {words}")
+    return found

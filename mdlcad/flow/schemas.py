@@ -1,0 +1,44 @@
+"""JSON schemas of every artefact, from the types themselves."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import msgspec
+
+from mdlcad.artefact import to_json
+from mdlcad.errors import UsageError
+from mdlcad.language import Device
+from mdlcad.mechanics import Sizing
+from mdlcad.network.model import Network
+from mdlcad.placement.placement import Placement
+from mdlcad.proof.outcome import Proof
+from mdlcad.report.report import Report
+from mdlcad.routing.layout import Layout
+from mdlcad.signoff.lvs import LvsResult
+from mdlcad.signoff.summary import DesignRules
+from mdlcad.synthesis.netlist import Netlist
+
+ARTEFACTS: dict[str, Any] = {
+    "device": Device,
+    "netlist": Netlist,
+    "network": Network,
+    "proof": Proof,
+    "sizing": Sizing,
+    "placement": Placement,
+    "layout": Layout,
+    "drc": DesignRules,
+    "extraction": tuple[LvsResult, Proof],
+    "report": Report,
+}
+
+
+def schema(name: str) -> bytes:
+    """The JSON schema of the artefact NAME.json.
+
+    Raises:
+        UsageError: there is no such artefact.
+    """
+    if name not in ARTEFACTS:
+        raise UsageError(f"no artefact '{name}'; the artefacts are {', '.join(sorted(ARTEFACTS))}")
+    return to_json(msgspec.json.schema(ARTEFACTS[name]))

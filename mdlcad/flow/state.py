@@ -1,0 +1,66 @@
+"""What a build knows so far."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TypeVar
+
+from mdlcad.language import Device
+from mdlcad.mapping import Library
+from mdlcad.mechanics import Process, Sizing
+from mdlcad.mechanics.carrier import CarrierStiffness
+from mdlcad.network.model import Network
+from mdlcad.parts.body import Body
+from mdlcad.placement.placement import Placement
+from mdlcad.proof.outcome import Proof
+from mdlcad.routing.layout import Layout
+from mdlcad.signoff.lvs import LvsResult
+from mdlcad.signoff.summary import DesignRules
+from mdlcad.synthesis.netlist import Netlist
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True, slots=True)
+class Job:
+    """What was asked for.
+
+    Attributes:
+        source: the MDL file; None if the build starts from the artefacts of a folder.
+        folder: where this build writes; moved to its place when it is whole.
+        workers: how many processors may be used; never changes a result.
+    """
+
+    source: Path | None
+    library: Library
+    process: Process
+    seed: int
+    folder: Path
+    workers: int
+
+
+@dataclass(frozen=True, slots=True)
+class State:
+    """The artefacts made so far, each by the step of its name; a step returns a new state."""
+
+    device: Device | None = None
+    netlist: Netlist | None = None
+    network: Network | None = None
+    proof: Proof | None = None
+    sizing: Sizing | None = None
+    placement: Placement | None = None
+    layout: Layout | None = None
+    bodies: tuple[Body, ...] | None = None
+    carriers: tuple[CarrierStiffness, ...] = ()
+    rules: DesignRules | None = None
+    files: tuple[str, ...] = ()
+    lvs: LvsResult | None = None
+    extracted: Proof | None = None
+
+
+def need(artefact: T | None) -> T:
+    """The artefact, which an earlier step of the list has made (``check_order`` proves that of the list)."""
+    if artefact is None:
+        raise AssertionError("a step ran before the one that makes what it needs")
+    return artefact

@@ -1,0 +1,270 @@
+"""The pipeline as one flat list: every producer is followed by its checker.
+
+A step takes the state so far and returns a new one. It declares the artefacts it needs and the ones it makes; a test
+holds the list to that.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+from mdlcad.artefact import to_json
+from mdlcad.errors import SignoffError
+from mdlcad.flow.state import Job, State, need
+from mdlcad.language import Device, read_device
+from mdlcad.mapping import map_netlist
+from mdlcad.mechanics import size
+from mdlcad.parts import build_parts
+from mdlcad.parts.body import bodies_bytes
+from mdlcad.placement.ports import PortPlace
+from mdlcad.proof.prove import prove
+from mdlcad.proof.reference import build_reference
+from mdlcad.routing import place_and_route
+from mdlcad.signoff.extraction import extract
+from mdlcad.signoff.geometry import check_geometry
+from mdlcad.signoff.lvs import compare, recover
+from mdlcad.signoff.readback import read_step
+from mdlcad.synthesis import synthesise
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """One step.
+
+    Attributes:
+        name: what ``--from`` and ``--to`` call it, and the stem of its artefact.
+        needs, makes: fields of ``State``.
+        run: does it. Raises InputError or UsageError for bad input, SignoffError if what it made does not hold.
+        summary: one line about what came out.
+        artefact: the bytes of what it made; None if it made files of its own.
+        stored: whether those bytes are the file NAME.json of the build (drawn bodies are kept as STEP instead).
+    """
+
+    name: str
+    needs: tuple[str, ...]
+    makes: tuple[str, ...]
+    run: Callable[[Job, State, Callable[[str], None]], State]
+    summary: Callable[[State], str]
+    artefact: Callable[[State], bytes] | None
+    stored: bool = True
+
+
+Progress = Callable[[str], None]
+
+
+def _read(job: Job, state: State, progress: Progress) -> State:
+    if job.source is None:
+        raise SignoffError("there is no program to read")
+    return replace(state, device=read_device(job.source))
+
+
+def _synthesise(job: Job, state: State, progress: Progress) -> State:
+    return replace(state, netlist=synthesise(need(state.device)))
+
+
+def _map(job: Job, state: State, progress: Progress) -> State:
+    return replace(state, network=map_netlist(need(state.netlist), job.library))
+
+
+def _prove(job: Job, state: State, progress: Progress) -> State:
+    proof = prove(need(state.network), build_reference(need(state.device)), seed=job.seed, workers=job.workers)
+    if not proof.holds:
+        words = "; ".join(str(item) for item in proof.first_mismatches[:3]) or "nothing was checked"
+        raise SignoffError(f"the network does not behave as the program says: {words}")
+    return replace(state, proof=proof)
+
+
+def _size(job: Job, state: State, progress: Progress) -> State:
+    return replace(state, sizing=size(need(state.network), job.process, need(state.proof).peaks))
+
+
+def _place_and_route(job: Job, state: State, progress: Progress) -> State:
+    device = need(state.device)
+    placement, layout = place_and_route(
+        need(state.network),
+        tuple(line.start for line in device.boundary),
+        port_places(device),
+        need(state.sizing).rules,
+        job.seed,
+        progress,
+    )
+    return replace(state, placement=placement, layout=layout)
+
+
+def _build_parts(job: Job, state: State, progress: Progress) -> State:
+    bodies = build_parts(
+        need(state.network), need(state.placement), need(state.layout), need(state.sizing), job.process
+    )
+    return replace(state, bodies=bodies)
+
+
+def _check_geometry(job: Job, state: State, progress: Progress) -> State:
+    rules = check_geometry(
+        need(state.network),
+        need(state.sizing),
+        need(state.placement),
+        need(state.layout),
+        need(state.bodies),
+        job.process,
+    )
+    return replace(state, rules=rules)
+
+
+def _export(job: Job, state: State, progress: Progress) -> State:
+    from mdlcad.export.files import write_files  # the CAD kernel takes seconds to load; early stages need not wait
+
+    return replace(state, files=write_files(need(state.device).name, need(state.bodies), job.folder, progress))
+
+
+def _lvs(job: Job, state: State, progress: Progress) -> State:
+    network = need(state.network)
+    recovered = recover(read_step(job.folder / f"{need(state.device).name}.step"))
+    result = compare(recovered, network)
+    extracted = prove(
+        extract(recovered, network, need(state.sizing)),
+        build_reference(need(state.device)),
+        seed=job.seed,
+        workers=job.workers,
+    )
+    return replace(state, lvs=result, extracted=extracted)
+
+
+def _picture(job: Job, state: State, progress: Progress) -> State:
+    from mdlcad.view.views import write_views  # VTK takes seconds to load
+
+    return replace(state, files=state.files + write_views(need(state.bodies), job.folder, progress))
+
+
+def port_places(device: Device) -> tuple[PortPlace, ...]:
+    """Every sensor and actuator bit at its place on the boundary, in grid units."""
+    lines = {line.name: line for line in device.boundary}
+    places = []
+    for port in (*device.sensors, *device.actuators):
+        for index, place in enumerate(port.places):
+            line = lines[place.line]
+            dx, dy = line.end[0] - line.start[0], line.end[1] - line.start[1]
+            length = (dx * dx + dy * dy) ** 0.5
+            places.append(
+                PortPlace(
+                    bit=f"{port.name}[{index}]",
+                    line=line.name,
+                    x=line.start[0] + place.position * dx,
+                    y=line.start[1] + place.position * dy,
+                    # the boundary runs clockwise, so outside is to the left of a line
+                    normal=(-dy / length, dx / length),
+                )
+            )
+    return tuple(places)
+
+
+def _behaviour_words(state: State) -> str:
+    proof = need(state.proof)
+    kind = "exhaustive" if proof.exhaustive else "sampled"
+    return (
+        f"{proof.transitions_checked} of {proof.transitions_total} transitions right ({kind}), "
+        f"{proof.decisions} decisions, margin {proof.margin:.2f}"
+    )
+
+
+STEPS: tuple[Step, ...] = (
+    Step(
+        "device",
+        (),
+        ("device",),
+        _read,
+        lambda s: f"{len(need(s.device).sensors)} sensors, {len(need(s.device).actuators)} actuators",
+        lambda s: to_json(s.device),
+    ),
+    Step(
+        "netlist",
+        ("device",),
+        ("netlist",),
+        _synthesise,
+        lambda s: f"{len(need(s.netlist).gates)} gates, {len(need(s.netlist).registers)} registers",
+        lambda s: to_json(s.netlist),
+    ),
+    Step(
+        "network",
+        ("netlist",),
+        ("network",),
+        _map,
+        lambda s: (
+            f"{len(need(s.network).masses)} masses, {len(need(s.network).couplings)} couplings, "
+            f"{need(s.network).cycles_per_tick} cycles a tick"
+        ),
+        lambda s: to_json(s.network),
+    ),
+    Step("proof", ("device", "network"), ("proof",), _prove, _behaviour_words, lambda s: to_json(s.proof)),
+    Step(
+        "sizing",
+        ("network", "proof"),
+        ("sizing",),
+        _size,
+        lambda s: f"throw {need(s.sizing).rules.throw:.2f} mm, row pitch {need(s.sizing).rules.row_pitch:.2f} mm",
+        lambda s: to_json(s.sizing),
+    ),
+    Step(
+        "placement",
+        ("device", "network", "sizing"),
+        ("placement", "layout"),
+        _place_and_route,
+        lambda s: f"{len(need(s.placement).column_x)} columns x {len(need(s.placement).row_y)} rows",
+        lambda s: to_json(s.placement),
+    ),
+    Step(
+        "layout",
+        ("layout",),
+        (),
+        lambda job, state, progress: state,
+        lambda s: (
+            f"{len(need(s.layout).rungs)} rungs, {len(need(s.layout).trunks)} trunks, "
+            f"{len(need(s.layout).couplers)} couplers"
+        ),
+        lambda s: to_json(s.layout),
+    ),
+    Step(
+        "parts",
+        ("network", "placement", "layout", "sizing"),
+        ("bodies",),
+        _build_parts,
+        lambda s: f"{len(need(s.bodies))} bodies",
+        lambda s: bodies_bytes(need(s.bodies)),
+        stored=False,
+    ),
+    Step(
+        "drc",
+        ("network", "placement", "layout", "sizing", "bodies"),
+        ("rules",),
+        _check_geometry,
+        lambda s: f"{len(need(s.rules).errors)} errors, {len(need(s.rules).findings)} findings",
+        lambda s: to_json(s.rules),
+    ),
+    Step("files", ("device", "bodies"), ("files",), _export, lambda s: f"{len(s.files)} files", None),
+    Step(
+        "extraction",
+        ("device", "network", "sizing", "files"),
+        ("lvs", "extracted"),
+        _lvs,
+        lambda s: (
+            f"layout {'matches' if need(s.lvs).matched else 'DIFFERS FROM'} the network; as built "
+            f"{need(s.extracted).transitions_checked} transitions, {need(s.extracted).mismatches} mismatches"
+        ),
+        lambda s: to_json([s.lvs, s.extracted]),
+    ),
+    Step("views", ("bodies", "files"), ("files",), _picture, lambda s: "pictures", None),
+)
+
+
+def check_order(steps: tuple[Step, ...] = STEPS) -> None:
+    """Every step's needs are made before it.
+
+    Raises:
+        ValueError: names the step and what it lacks.
+    """
+    made: set[str] = set()
+    for step in steps:
+        lacking = set(step.needs) - made
+        if lacking:
+            raise ValueError(f"step {step.name} needs {sorted(lacking)}, which no earlier step makes")
+        made |= set(step.makes)

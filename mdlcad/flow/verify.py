@@ -1,0 +1,90 @@
+"""Sign a finished build off again, from its files alone: nothing of the run that made it is trusted."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import shapely
+
+from mdlcad.artefact import checksum
+from mdlcad.errors import SignoffError, UsageError
+from mdlcad.export.mesh import check_stl
+from mdlcad.parts.plates import plates_of
+from mdlcad.flow.folder import REPORT, load
+from mdlcad.language import Device
+from mdlcad.mechanics import Process, Sizing
+from mdlcad.mechanics.carrier import carrier_stiffnesses
+from mdlcad.network.model import Network
+from mdlcad.parts import build_parts
+from mdlcad.placement.placement import Placement
+from mdlcad.proof.prove import prove
+from mdlcad.proof.reference import build_reference
+from mdlcad.report.report import Report
+from mdlcad.routing.layout import Layout
+from mdlcad.signoff.extraction import extract
+from mdlcad.signoff.files import check_bodies
+from mdlcad.signoff.geometry import check_geometry
+from mdlcad.signoff.lvs import compare, recover
+from mdlcad.signoff.readback import read_step
+
+
+def verify(folder: Path, workers: int, say: Callable[[str], None]) -> list[str]:
+    """What does not hold in the build, in words; empty if all holds.
+
+    Raises:
+        UsageError: the folder is not a whole build (a file missing, truncated or of another shape: which one).
+    """
+    if not folder.is_dir():
+        raise UsageError(f"{folder}: no such build folder")
+    report = load(folder, REPORT, Report)
+    if report.extracted is None:
+        raise UsageError(f"{folder}: was stopped before its sign-off (--to); build it whole to verify it")
+    broken: list[str] = []
+
+    def step(name: str, found: list[str]) -> None:
+        say(f"{name:<11} {'holds' if not found else f'{len(found)} findings'}")
+        broken.extend(f"{name}: {words}" for words in found)
+
+    step("hashes", _check_hashes(folder, report))
+    if broken:
+        return broken
+    device, network = load(folder, "device.json", Device), load(folder, "network.json", Network)
+    reference = build_reference(device)
+    proof = prove(network, reference, seed=report.seed, workers=workers)
+    step("behaviour", [] if proof.holds else [str(item) for item in proof.first_mismatches] or ["nothing was checked"])
+    sizing, process = load(folder, "sizing.json", Sizing), load(folder, "process.json", Process)
+    placement, layout = load(folder, "placement.json", Placement), load(folder, "layout.json", Layout)
+    bodies = build_parts(network, placement, layout, sizing, process)
+    carriers = carrier_stiffnesses(network, placement, layout, sizing, process)
+    rules = check_geometry(network, sizing, placement, layout, bodies, carriers, process)
+    step("drc", [f"{item.rule}: {', '.join(item.bodies)}: {item.message}" for item in rules.errors])
+    found = read_step(folder / f"{device.name}.step")
+    step("step", check_bodies(bodies, found))
+    stl = []
+    for plate, members in plates_of(bodies).items():
+        area = shapely.union_all([body.section for body in members], grid_size=1e-4).area
+        try:
+            check_stl(plate, (folder / "plates" / f"{plate}.stl").read_bytes(), area * members[0].thickness)
+        except SignoffError as problem:
+            stl.append(str(problem))
+    step("stl", stl)
+    recovered = recover(found)
+    lvs = compare(recovered, network)
+    step("lvs", list(lvs.differences))
+    if lvs.matched:
+        built = prove(extract(recovered, network, sizing), reference, seed=report.seed, workers=workers)
+        words = [str(item) for item in built.first_mismatches] or ["nothing was checked"]
+        step("extracted", [] if built.holds else words)
+    return broken
+
+
+def _check_hashes(folder: Path, report: Report) -> list[str]:
+    found = []
+    for name, expected in sorted(report.files.items()):
+        path = folder / name
+        if not path.is_file():
+            raise UsageError(f"{path}: is missing from the build; build it again")
+        if checksum(path.read_bytes()) != expected:
+            found.append(f"{name}: is not the file that was built (its SHA-256 differs from report.json)")
+    return found

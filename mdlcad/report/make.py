@@ -1,0 +1,56 @@
+"""The report of a build, from what it made."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from mdlcad.artefact import checksum
+from mdlcad.mechanics import Sizing
+from mdlcad.mechanics.carrier import CarrierStiffness
+from mdlcad.parts.body import Body
+from mdlcad.proof.outcome import Proof
+from mdlcad.report.report import Behaviour, Mechanics
+
+
+def behaviour_of(proof: Proof | None) -> Behaviour | None:
+    """The figures of a proof that the report shows."""
+    if proof is None:
+        return None
+    return Behaviour(proof.transitions_total, proof.transitions_checked, proof.mismatches, proof.exhaustive)
+
+
+def mechanics_of(sizing: Sizing | None, carriers: Sequence[CarrierStiffness]) -> Mechanics | None:
+    """The figures of the sizing that decide whether the parts can work."""
+    if sizing is None:
+        return None
+    strains = [unit.strain for unit in sizing.units]
+    strains += [item.leaf.strain for item in (*sizing.couplers, *sizing.biases)]
+    return Mechanics(
+        strain_worst=max(strains),
+        carrier_stiffness_ratio_worst=min((item.ratio for item in carriers), default=None),
+        throw_mm=sizing.rules.throw,
+        clock_stroke_mm=sizing.rules.clock_throw,
+        compensation_difference_worst=max(abs(u.compensation - u.compensation_network) for u in sizing.units),
+        warnings=tuple(f"{item.subject}: {item.message}: {item.value:.4g}, limit {item.limit:.4g}" for item in sizing.findings),
+    )
+
+
+def extent_of(bodies: Sequence[Body]) -> tuple[float, float, float]:
+    """Size of the device in x, y and z, mm, tabs included."""
+    bounds = [body.section.bounds for body in bodies]
+    low, high = min(body.z for body in bodies), max(body.z + body.thickness for body in bodies)
+    return (
+        round(max(b[2] for b in bounds) - min(b[0] for b in bounds), 4),
+        round(max(b[3] for b in bounds) - min(b[1] for b in bounds), 4),
+        round(high - low, 4),
+    )
+
+
+def hashes_of(folder: Path) -> dict[str, str]:
+    """SHA-256 of every file of a build folder but the report itself, by path relative to the folder, sorted."""
+    return {
+        path.relative_to(folder).as_posix(): checksum(path.read_bytes())
+        for path in sorted(folder.rglob("*"))
+        if path.is_file() and path != folder / "report.json"
+    }

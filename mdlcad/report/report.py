@@ -1,0 +1,83 @@
+"""report.json: what was asked, what came out, and whether it holds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Behaviour:
+    """A proof in figures: transitions that there are, that were simulated, and that went wrong."""
+
+    transitions_total: int
+    transitions_checked: int
+    mismatches: int
+    exhaustive: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Lvs:
+    """Whether the geometry read back from the STEP file is the network; differences in words."""
+
+    matched: bool
+    differences: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Mechanics:
+    """Figures that decide whether the parts can work.
+
+    Attributes:
+        strain_worst: largest strain of any flexure over the motion seen in simulation.
+        carrier_stiffness_ratio_worst: smallest ratio of a carrier's stiffness to that of a coupler it drives; None
+            before there is a layout.
+        throw_mm: half stroke of the shuttles; clock_stroke_mm: half stroke of the clock plates.
+        compensation_difference_worst: largest difference, in units of k, between the compensation the network assumes
+            and the one that the built parts need.
+        warnings: what the sizing found wanting, in words with numbers.
+    """
+
+    strain_worst: float
+    carrier_stiffness_ratio_worst: float | None
+    throw_mm: float
+    clock_stroke_mm: float
+    compensation_difference_worst: float
+    warnings: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class StageRecord:
+    """One stage that ran: wall time in seconds and the SHA-256 of its artefact."""
+
+    name: str
+    seconds: float
+    checksum: str
+
+
+@dataclass(frozen=True, slots=True)
+class Report:
+    """The machine's copy of the build's result. None: the build was stopped (``--to``) before that was known.
+
+    All of it but the seconds of the stages is the same for the same input, seed and version.
+    """
+
+    design: str
+    cells: str
+    process: str
+    seed: int
+    version: str
+    masses: int | None
+    couplings: int | None
+    gates: int | None
+    cycles_per_tick: int | None
+    period: float | None
+    behaviour: Behaviour | None
+    extracted: Behaviour | None
+    lvs: Lvs | None
+    drc: dict[str, int] | None
+    mechanics: Mechanics | None
+    extent_mm: tuple[float, float, float] | None
+    plates: tuple[str, ...]
+    tiles: int | None
+    stages: tuple[StageRecord, ...]
+    files: dict[str, str]
