@@ -17,7 +17,7 @@ from mdlcad.proof.compare import compare, describe
 from mdlcad.proof.itinerary import Itinerary, make_itinerary
 from mdlcad.proof.outcome import Mismatch, Proof
 from mdlcad.proof.timing import NoTick, find_timing
-from mdlcad.simulation.run import STEPS_PER_PERIOD
+from mdlcad.simulation.run import steps_for
 from mdlcad.simulation.system import system_of
 
 SENSOR_FORCE = 1.0
@@ -33,20 +33,22 @@ def prove(
     seed: int = 0,
     workers: int = 2,
     sensor_force: float = SENSOR_FORCE,
-    steps_per_period: int = STEPS_PER_PERIOD,
+    steps_per_period: int | None = None,
 ) -> Proof:
     """Check ``network`` against ``reference``; see ``Proof.holds`` for the verdict.
 
     Machines whose reachable transitions are all known and not more than ``decisions`` (always so with at most 12 bits
     of state and inputs) are checked exhaustively; of others, every state that was found is visited and at least
     ``decisions`` decisions are simulated. A sensor bit b drives its mass with the constant force (2 b - 1)
-    ``sensor_force``. The result depends on the arguments alone, not on ``workers``.
+    ``sensor_force``. Without ``steps_per_period`` the step is fine enough for the network's masses. The result
+    depends on the arguments alone, not on ``workers``.
 
     Raises:
         UsageError: the bits of the network are not those of the reference.
     """
     system = system_of(network)
     _check_names(network, reference)
+    steps_per_period = steps_per_period or steps_for(system)
     itinerary = make_itinerary(reference, decisions, seed)
     length, lanes, _ = itinerary.inputs.shape
     checked = visited = mismatches = simulated = 0

@@ -7,13 +7,13 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from devices import Draft, Machine, toggle, vote, walker
 
 from mdlcad.artefact import from_json, to_json
 from mdlcad.errors import UsageError
 from mdlcad.network.model import Coupling, Mass, Network
 from mdlcad.proof.outcome import Proof
 from mdlcad.proof.prove import prove
+from tests.proof.devices import Draft, Machine, toggle, vote, walker
 
 
 @pytest.mark.parametrize(("device", "total"), [(toggle, 4), (walker, 16), (vote, 8)])

@@ -6,13 +6,13 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from devices import Machine
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mdlcad.proof.itinerary import make_itinerary
 from mdlcad.proof.machine import Graph, all_vectors, explore, history_graph, some_vectors
 from mdlcad.proof.walks import plan
+from tests.proof.devices import Machine
 
 
 def made_of(table: np.ndarray, bits: int, inputs: int) -> Machine:
