@@ -1,0 +1,6 @@
+"""Netlist to a network of threshold-gate masses, by a cell library."""
+
+from mdlcad.mapping.library import Library, load_library
+from mdlcad.mapping.mapper import map_netlist
+
+__all__ = ["Library", "load_library", "map_netlist"]

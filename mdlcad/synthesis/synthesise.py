@@ -26,7 +26,7 @@ def synthesise(device: Device) -> Netlist:
     """
     run = run_yosys(device)
     check_design(device, run)
-    return _build(device, parse_gates(run.netlist))
+    return build_netlist(device, parse_gates(run.netlist))
 
 
 def port_bits(name: str, width: int) -> Iterator[str]:
@@ -34,7 +34,8 @@ def port_bits(name: str, width: int) -> Iterator[str]:
     return (f"{name}[{index}]" for index in range(width))
 
 
-def _build(device: Device, design: GateDesign) -> Netlist:
+def build_netlist(device: Device, design: GateDesign) -> Netlist:
+    """The netlist of a gate-level design whose ports are those of ``device``."""
     logic = {cell.output: cell for cell in design.logic}
     registers = {cell.output: cell for cell in design.registers}
     inputs: dict[Bit, str] = {}

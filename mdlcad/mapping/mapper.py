@@ -1,0 +1,76 @@
+"""Netlist to network: the stage's one entry."""
+
+from __future__ import annotations
+
+from mdlcad.mapping.build import build_network, invert, with_ring
+from mdlcad.mapping.candidates import find_candidates
+from mdlcad.mapping.cover import CoverModel, solve_cover
+from mdlcad.mapping.library import Library
+from mdlcad.mapping.names import name_masses
+from mdlcad.mapping.plan import Plan, Role
+from mdlcad.mapping.registers import Wanted, exact_choices, structural_choices
+from mdlcad.mapping.restructure import restructure
+from mdlcad.mapping.subject import FALSE, TRUE, Subject
+from mdlcad.network.model import Network
+from mdlcad.synthesis.netlist import Netlist
+
+_MOST_CYCLES = 8
+_DETERMINISTIC_TIME = 3.0
+_SEED = 1
+
+
+def map_netlist(netlist: Netlist, library: Library) -> Network:
+    """Map ``netlist`` to masses and springs of ``library``.
+
+    The result is a function of the two arguments alone.
+
+    Raises:
+        UsageError: the device needs a fan-out that the library does not allow.
+    """
+    subject, nets = _make_subject(netlist)
+    plan = _make_plan(netlist, library, subject, nets)
+    masses, tick = with_ring(plan)
+    names, upside_down = name_masses(
+        Plan(masses, plan.ring, plan.tick_cycle, plan.cycles, plan.carriers), subject, netlist, nets
+    )
+    carried = frozenset(
+        mass.key
+        for mass in masses
+        if mass.key.role is Role.LOGIC and mass.key.of[0] in upside_down and mass.key not in plan.carriers
+    )
+    return build_network(netlist, library, plan, invert(masses, carried), names, tick)
+
+
+def _make_subject(netlist: Netlist) -> tuple[Subject, dict[str, int]]:
+    subject = Subject([*netlist.inputs, *(register.bit for register in netlist.registers)])
+    nets = {"0": FALSE, "1": TRUE} | {name: subject.input(name) for name in subject.inputs}
+    for gate in netlist.gates:
+        nets[gate.net] = subject.add_gate(gate, nets)
+    return subject, nets
+
+
+def _make_plan(netlist: Netlist, library: Library, subject: Subject, nets: dict[str, int]) -> Plan:
+    wanted = []
+    for register in netlist.registers:
+        output, data = nets[register.bit], nets[register.data]
+        enable = None if register.enable is None else nets[register.enable]
+        following = data if enable is None else subject.choose(output, data, enable)
+        wanted.append(Wanted(register, output, following, data, enable))
+    outputs = [nets[output.net] for output in netlist.outputs]
+    roots = list(outputs)
+    for item in wanted:
+        roots += [item.following, item.data]
+        if item.enable is not None:
+            roots.append(item.enable)
+        if subject.exact:
+            # what sets the register if it is 0, and what keeps it if it is 1
+            node = item.output >> 1
+            roots += [subject.cofactor(item.following, node, value) for value in (False, True)]
+    restructure(subject, roots)
+    limit = library.gates.weight_limit
+    candidates = find_candidates(subject, limit)
+    choices = [
+        exact_choices(subject, candidates, item) if subject.exact else structural_choices(item) for item in wanted
+    ]
+    cover = CoverModel(subject, candidates, choices, outputs, limit, _MOST_CYCLES)
+    return solve_cover(cover, _DETERMINISTIC_TIME, _SEED)
