@@ -235,7 +235,7 @@ def _rules(
     hub_half = pin.hub_gap / 2.0 + pin.side + 2.0 * pin.wall
     clock_throw = _up(law.stroke_per_k * max(abs(mass.k1) for mass in network.masses))
     overrun = max(0.0, clock_throw - min(item.preload for item in units))
-    left = _up(hub_half + unit.span + pin.wall + unit.rib_width)  # pin.wall: the anchor that joins the beams
+    left = _up(hub_half + unit.span + unit.rib_width)
     right = _up(hub_half + unit.span + series.reach + overrun + link.gap)
     reach = {item.coupling: round(hub_half + item.leaf.reach, 6) for item in couplers}
     track = link.bar_width + link.gap

@@ -30,11 +30,12 @@ def bias_bodies(stack: Stack, hub: Hub, leaf: BiasLeaf, size: BiasSize) -> list[
     straight = meander_path(shape, start, hub.y, direction)
     bent = deflected_path(chain, 0.0, size.offset, start, hub.y, direction)
     x = start + direction * size.leaf.reach
+    root = (start - direction * 0.2, hub.y)  # 0.2 mm into the block, so that no slit is left there
     post_y = round(hub.y + size.offset, 4)
 
     def shape_of(path: Path, y: float) -> Polygon:
         eye = disc(x, y, eye_radius(stack.process))
-        whole = join([hub_block(stack, hub, leaf.side), wall_strip([*path, (x, y)], shape.wall), eye])
+        whole = join([hub_block(stack, hub, leaf.side), wall_strip([root, *path, (x, y)], shape.wall), eye])
         pin = square(hub_pin_x(stack, hub, leaf.side), hub.y, rules.pin)
         return only(cut(whole, [pin, disc(x, y, link.post_radius + link.post_fit)]))
 

@@ -11,6 +11,8 @@ from shapely import Polygon
 
 
 class BodyKind(StrEnum):
+    """What a body is for."""
+
     FRAME = "frame"
     BASE = "base"
     COVER = "cover"

@@ -15,9 +15,7 @@ from mdlcad.routing.layout import CouplerLeaf
 def coupler_body(stack: Stack, source: Hub, target: Hub, leaf: CouplerLeaf, size: CouplerSize) -> Body:
     """The coupler's body, its block on the target's hub included."""
     rules = stack.sizing.rules
-    path = meander_path(
-        size.leaf.shape, leaf_start(stack, target, leaf.side), target.y, outward(leaf.side)
-    )
+    path = meander_path(size.leaf.shape, leaf_start(stack, target, leaf.side), target.y, outward(leaf.side))
     block = hub_block(stack, target, leaf.side)
     whole = join([block, wall_strip(path, size.leaf.shape.wall)])
     section = only(cut(whole, [square(hub_pin_x(stack, target, leaf.side), target.y, rules.pin)]))

@@ -1,4 +1,4 @@
-"""A negative coupling: two meanders joined by an eye that turns on a fixed post, so that one end up pushes the other down."""
+"""A negative coupling: two meanders joined by an eye that turns on a fixed post, so one end up is the other down."""
 
 from __future__ import annotations
 

@@ -67,10 +67,13 @@ class Stack:
         moves_with: tuple[str, ...],
         colour: str,
         assembled: Polygon | None = None,
+        envelope: Polygon | None = None,
     ) -> Body:
         """A body cut from a plate."""
         thickness = self.process.plate(plate).thickness
-        return Body(name, kind, plate, self.bottom(plate), thickness, section, throw, moves_with, colour, assembled)
+        return Body(
+            name, kind, plate, self.bottom(plate), thickness, section, throw, moves_with, colour, assembled, envelope
+        )
 
     def upright(
         self,
@@ -97,7 +100,9 @@ def make_stack(process: Process, sizing: Sizing, phases: int) -> Stack:
     """
     plates = [plate.name for plate in reversed(process.plates(PlateRole.CLOCK))]
     if len(plates) < phases:
-        raise UsageError(f"process {process.name}: stack.plates: {phases} clock plates are needed, it has {len(plates)}")
+        raise UsageError(
+            f"process {process.name}: stack.plates: {phases} clock plates are needed, it has {len(plates)}"
+        )
     return Stack(process, sizing, tuple(plates[:phases]))
 
 

@@ -1,15 +1,14 @@
-"""The buckling-beam unit: shuttle, beams, end block, series spring and clock block, all of one sheet.
-
-As four bodies, for they move differently: the shuttle; the beams on the frame's side with the anchor that joins them to
-the rib; the beams on the clock's side with their end block; and the drive (series spring and clock block).
-"""
+"""The buckling-beam unit: shuttle, beams, end block, series spring and clock block, all of one sheet."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
+import shapely
 from shapely import Polygon
+from shapely.affinity import translate
 
 from mdlcad.mechanics.sizing import UnitSize
 from mdlcad.parts import palette
@@ -19,38 +18,65 @@ from mdlcad.parts.stack import FRAME_REF, Hub, Stack, clock_ref
 from mdlcad.routing.layout import Side
 
 
-def unit_bodies(stack: Stack, hub: Hub, unit: UnitSize, pinned: Sequence[Side]) -> list[Body]:
-    """Bodies of one unit. ``pinned``: the sides of the hub that carry a pin."""
+def unit_body(stack: Stack, hub: Hub, unit: UnitSize, pinned: Sequence[Side]) -> Body:
+    """One unit, cut with its clock block at rest and assembled with the block pushed by the unit's preload.
+
+    Args:
+        pinned: the sides of the hub that carry a pin.
+    """
     rules, template = stack.sizing.rules, stack.process.unit
-    colour = palette.unit(unit.phase)
     high = stack.sizing.law.shuttle_height / 2.0
-    holes = [square(hub_pin_x(stack, hub, side), hub.y, rules.pin) for side in pinned]
-    shuttle = box(hub.x - rules.hub_half, hub.y - high, hub.x + rules.hub_half, hub.y + high)
     left, right = hub.x - rules.hub_half, hub.x + rules.hub_half
-    heights = beam_heights(stack)
-    anchor = box(left - template.span - stack.process.pin.wall, hub.y - high, left - template.span, hub.y + high)
-    fixed = [strip([(left - template.span, hub.y + y), (left, hub.y + y)], template.beam_wall) for y in heights]
     end = right + template.span
+    swaying = [box(left, hub.y - high, right, hub.y + high)]
+    for y in beam_heights(stack):
+        swaying.append(strip([(left - template.span, hub.y + y), (left, hub.y + y)], template.beam_wall))
+        swaying.append(strip([(right, hub.y + y), (end, hub.y + y)], template.beam_wall))
     block = box(end, hub.y - high, end + template.block_width, hub.y + high)
-    driven = [strip([(right, hub.y + y), (end, hub.y + y)], template.beam_wall) for y in heights]
-    sway, swing = (0.0, rules.throw), (rules.clock_throw, rules.throw)
-    name, plate, clock = f"unit.{unit.mass}", stack.unit_plate, clock_ref(unit.phase)
-    kind = BodyKind.UNIT
-    return [
-        stack.sheet(name, kind, plate, only(cut(shuttle, holes)), sway, (hub.ref,), colour),
-        stack.sheet(f"{name}.fixed", kind, plate, join([anchor, *fixed]), sway, (hub.ref, FRAME_REF), colour),
-        stack.sheet(f"{name}.driven", kind, plate, join([block, *driven]), swing, (hub.ref, clock), colour),
-        stack.sheet(
-            f"{name}.drive",
-            kind,
-            plate,
-            _drive(stack, hub, 0.0),
-            (rules.clock_throw, 0.0),
-            (clock,),
-            colour,
-            _drive(stack, hub, unit.preload),
-        ),
-    ]
+    holes = [square(hub_pin_x(stack, hub, side), hub.y, rules.pin) for side in pinned]
+
+    def whole(preload: float) -> Polygon:
+        return only(
+            cut(join([*swaying, block, *drive_parts(stack, hub, preload)]), [*holes, _hole(stack, hub, preload)])
+        )
+
+    driven = [block, *drive_parts(stack, hub, unit.preload)]
+    envelope = join(
+        [_swept(part, 0.0, rules.throw) for part in swaying] + [_swept(p, rules.clock_throw, 0.0) for p in driven]
+    )
+    return stack.sheet(
+        f"unit.{unit.mass}",
+        BodyKind.UNIT,
+        stack.unit_plate,
+        whole(0.0),
+        (rules.clock_throw, rules.throw),
+        (hub.ref, clock_ref(unit.phase), FRAME_REF),
+        palette.unit(unit.phase),
+        whole(unit.preload),
+        envelope,
+    )
+
+
+def _hole(stack: Stack, hub: Hub, preload: float) -> Polygon:
+    return square(clock_pin_x(stack, hub, preload), hub.y, stack.sizing.rules.pin)
+
+
+def _swept(part: Polygon, x: float, y: float) -> Polygon:
+    """What a part without re-entrant corners along its motion covers when it moves by up to +-x and +-y."""
+    return shapely.union_all(
+        [
+            translate(part, -x, -y),
+            translate(part, x, y),
+            *(_between(edge, x, y) for edge in pairwise(part.exterior.coords)),
+        ]
+    )
+
+
+def _between(edge: tuple[tuple[float, ...], tuple[float, ...]], x: float, y: float) -> Polygon:
+    (x0, y0), (x1, y1) = edge
+    return shapely.MultiPoint(
+        [(x0 - x, y0 - y), (x0 + x, y0 + y), (x1 - x, y1 - y), (x1 + x, y1 + y)]
+    ).convex_hull.buffer(0.0)
 
 
 def beam_heights(stack: Stack) -> list[float]:
@@ -74,8 +100,8 @@ def clock_pin_x(stack: Stack, hub: Hub, preload: float) -> float:
     return end - pin.wall - pin.side / 2.0 - preload
 
 
-def _drive(stack: Stack, hub: Hub, preload: float) -> Polygon:
-    """Series spring and clock block, the clock block pushed by ``preload`` towards the shuttle."""
+def drive_parts(stack: Stack, hub: Hub, preload: float) -> list[Polygon]:
+    """Series spring and clock block, the clock block pushed by ``preload`` towards the shuttle (hole not cut)."""
     rules, template, series, pin = stack.sizing.rules, stack.process.unit, stack.sizing.series, stack.process.pin
     face = hub.x + rules.hub_half + template.span + template.block_width
     near = [face + series.clear_block + series.wall / 2.0 + i * series.pitch for i in range(series.leaves)]
@@ -89,14 +115,12 @@ def _drive(stack: Stack, hub: Hub, preload: float) -> Polygon:
         box(centre - clock_half, hub.y - clock_half, centre + clock_half, hub.y + clock_half),
     ]
     for side in (1.0, -1.0):
-        low, high = hub.y + side * (root + series.length), hub.y + side * series.height
-        parts.append(
-            box(near[0] - half - preload / 2, min(low, high), far[-1] + half - preload / 2, max(low, high))
-        )
-        for places, start, end in ((near, 0.0, -preload / 2), (far, -preload, -preload / 2)):
-            for x in places:
-                parts.append(strip(_guided(x + start, x + end, hub.y + side * root, low), series.wall))
-    return only(cut(join(parts), [square(centre, hub.y, rules.pin)]))
+        inner, outer = hub.y + side * (root + series.length), hub.y + side * series.height
+        shift = preload / 2.0  # the trusses float half way
+        parts.append(box(near[0] - half - shift, min(inner, outer), far[-1] + half - shift, max(inner, outer)))
+        for places, push in ((near, 0.0), (far, preload)):
+            parts += [strip(_guided(x - push, x - shift, hub.y + side * root, inner), series.wall) for x in places]
+    return parts
 
 
 def _guided(x_start: float, x_end: float, y_start: float, y_end: float) -> list[tuple[float, float]]:
@@ -105,5 +129,7 @@ def _guided(x_start: float, x_end: float, y_start: float, y_end: float) -> list[
         return [(x_start, y_start), (x_end, y_end)]
     at = np.linspace(0.0, 1.0, 9)
     shape = 3.0 * at**2 - 2.0 * at**3
+    into = 0.2 * (y_start - y_end) / abs(y_start - y_end)  # mm into stem and truss, so that no slit is left there
     xs, ys = x_start + (x_end - x_start) * shape, y_start + (y_end - y_start) * at
-    return [(float(x), float(y)) for x, y in zip(xs, ys, strict=True)]
+    path = [(float(x), float(y)) for x, y in zip(xs, ys, strict=True)]
+    return [(x_start, y_start + into), *path, (x_end, y_end - into)]

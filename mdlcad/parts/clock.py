@@ -1,0 +1,108 @@
+"""Clock plates, one a phase: sheets inside the rim that move in x, and the pins that push the units' clock blocks."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import shapely
+from shapely import Polygon
+from shapely.affinity import translate
+
+from mdlcad.errors import UsageError
+from mdlcad.mechanics.sizing import UnitSize
+from mdlcad.parts import palette
+from mdlcad.parts.body import Body, BodyKind
+from mdlcad.parts.frame import interior
+from mdlcad.parts.shapes import GRID, box, cut, join, only, pieces, square
+from mdlcad.parts.stack import Hub, Stack, clock_ref
+from mdlcad.parts.unit import clock_pin_x
+
+
+@dataclass(frozen=True, slots=True)
+class Handle:
+    """The tongue by which a clock plate is driven: its middle in y, and its end in x outside the boundary."""
+
+    y: float
+    x_start: float
+    x_end: float
+
+
+def handle_place(stack: Stack, boundary: Polygon) -> Handle:
+    """Where the handles leave the device: to the right, at the middle of the widest run of the right-hand edge."""
+    rules = stack.sizing.rules
+    x_high = boundary.bounds[2]
+    strip = box(x_high - 2.0 * rules.frame_width, boundary.bounds[1], x_high, boundary.bounds[3])
+    at_edge = max(pieces(strip.intersection(boundary)), key=lambda piece: piece.area)
+    y = round((at_edge.bounds[1] + at_edge.bounds[3]) / 2.0, 4)
+    return Handle(y, x_high - 3.0 * rules.frame_width, x_high + 2.0 * rules.frame_width)
+
+
+def handle_notch(stack: Stack, handle: Handle) -> Polygon:
+    """What to cut from the rim of a clock plate's level."""
+    half = stack.sizing.rules.frame_width / 2.0 + stack.sizing.rules.gap
+    return box(handle.x_start, handle.y - half, handle.x_end, handle.y + half)
+
+
+def clock_pin(stack: Stack, hub: Hub, unit: UnitSize) -> Body:
+    """The pin from a unit's clock plate up to its clock block, in its place when the clock is in its middle."""
+    rules = stack.sizing.rules
+    return stack.upright(
+        f"pin.clock.{unit.mass}",
+        BodyKind.PIN,
+        stack.clock_plates[unit.phase],
+        stack.unit_plate,
+        square(clock_pin_x(stack, hub, unit.preload), hub.y, rules.pin),
+        (rules.clock_throw, 0.0),
+        clock_ref(unit.phase),
+        palette.clock(unit.phase),
+    )
+
+
+def clock_plates(
+    stack: Stack, boundary: Polygon, handle: Handle, pins: Sequence[Body], posts: Sequence[Body]
+) -> list[Body]:
+    """The clock plates and their handles: holes for their own pins, slots for the pins of plates below and for posts.
+
+    Args:
+        pins: all clock pins; posts: all posts that pass clock plates.
+
+    Raises:
+        UsageError: the inside of the boundary falls apart, so that a plate would be in pieces.
+    """
+    rules = stack.sizing.rules
+    inside = interior(stack, boundary, rules.gap)
+    inner = inside.intersection(translate(inside, -rules.clock_throw)).intersection(
+        translate(inside, rules.clock_throw)
+    )
+    half = rules.frame_width / 2.0
+    hole = square(handle.x_end - half, handle.y, rules.pin)
+    tongue = box(handle.x_start, handle.y - half, handle.x_end, handle.y + half)
+    bodies = []
+    for phase, plate in enumerate(stack.clock_plates):
+        level = stack.bottom(plate)
+        own, away = clock_ref(phase), [hole]
+        for body in (*pins, *posts):
+            if not body.z <= level < body.z + body.thickness:
+                continue
+            x, y = body.section.centroid.x, body.section.centroid.y
+            if body.moves_with == (own,):
+                away.append(square(x, y, rules.pin))
+                continue
+            reach = rules.pin / 2.0 + rules.gap
+            run = reach + rules.clock_throw + body.throw[0]
+            away.append(box(x - run, y - reach, x + run, y + reach))
+        try:
+            whole = only(cut(join([inner, tongue]), away))
+            section, held = only(whole.intersection(inner)), only(shapely.difference(whole, inner, grid_size=GRID))
+        except ValueError as error:
+            raise UsageError(f"the boundary is so narrow that the clock plate {plate} falls apart: {error}") from error
+        bodies.append(
+            stack.sheet(plate, BodyKind.CLOCK, plate, section, (rules.clock_throw, 0.0), (own,), palette.clock(phase))
+        )
+        # a tab: it reaches outside the boundary
+        name = f"handle.{plate}"
+        bodies.append(
+            stack.sheet(name, BodyKind.TAB, plate, held, (rules.clock_throw, 0.0), (own,), palette.clock(phase))
+        )
+    return bodies
