@@ -15,7 +15,7 @@ class Behaviour(Protocol):
 
     Attributes:
         inputs, outputs: sensor and actuator bits, as "NAME[i]".
-        state: register bits, named as ``Register.bit`` of the network; empty for a device without state.
+        states: register bits, named as ``Register.bit`` of the network; empty for a device without state.
         initial: uint8[S], the state at power-up.
     """
 
@@ -24,7 +24,7 @@ class Behaviour(Protocol):
     @property
     def outputs(self) -> tuple[str, ...]: ...
     @property
-    def state(self) -> tuple[str, ...]: ...
+    def states(self) -> tuple[str, ...]: ...
     @property
     def initial(self) -> Bits: ...
 
@@ -36,7 +36,7 @@ class Behaviour(Protocol):
             inputs: uint8[n, I].
 
         Returns:
-            uint8[n, S], the registers after the tick, and uint8[n, O], what the combinational logic makes of
-            ``states`` and ``inputs`` (of the state *before* the tick).
+            uint8[n, S], the registers after the tick, and uint8[n, O], the outputs then: what the logic makes of the
+            new state and of the inputs, which are still held.
         """
         ...

@@ -53,7 +53,7 @@ def compare(
 ) -> Comparison:
     """Simulate ``itinerary`` on the network and compare. The names of bits must agree (``prove`` checks them)."""
     decisions, lanes, _ = itinerary.inputs.shape
-    registers = tuple((register.bit, reference.state.index(register.bit)) for register in network.registers)
+    registers = tuple((register.bit, reference.states.index(register.bit)) for register in network.registers)
     state_masses = [system.index(register.mass) for register in network.registers]
     giver = {port.bit: port.mass for port in network.actuators}
     output_masses = [system.index(giver[bit]) for bit in reference.outputs]
@@ -61,14 +61,11 @@ def compare(
     masses = np.array(state_masses + output_masses + tick_masses, dtype=np.int64)
     instant = instants(system, masses, steps_per_period)
 
-    taker = {port.bit: port.mass for port in network.sensors}
-    sensors = np.array([system.index(taker[bit]) for bit in reference.inputs], dtype=np.int64)
-    drive = sensor_force * (2.0 * itinerary.inputs.transpose(0, 2, 1) - 1.0) * system.polarity[sensors][:, None]
-    span = timing.period * steps_per_period
+    stimulus = stimulus_of(network, reference, system, itinerary, timing, sensor_force, steps_per_period)
     cycles = decisions * timing.period + timing.tick_cycle + 1
     run = simulate(
         system,
-        Stimulus(sensors, np.ascontiguousarray(drive), span, span),
+        stimulus,
         cycles * steps_per_period,
         watch=Watch(masses, instant),
         steps_per_period=steps_per_period,
@@ -111,6 +108,23 @@ def compare(
     )
 
 
+def stimulus_of(
+    network: Network,
+    reference: Behaviour,
+    system: System,
+    itinerary: Itinerary,
+    timing: Timing,
+    sensor_force: float,
+    steps_per_period: int,
+) -> Stimulus:
+    """The forces on the sensors: (2 b - 1) ``sensor_force``, upside down where the mass is, held for each decision."""
+    taker = {port.bit: port.mass for port in network.sensors}
+    sensors = np.array([system.index(taker[bit]) for bit in reference.inputs], dtype=np.int64)
+    force = sensor_force * (2.0 * itinerary.inputs.transpose(0, 2, 1) - 1.0) * system.polarity[sensors][:, None]
+    span = timing.period * steps_per_period
+    return Stimulus(sensors, np.ascontiguousarray(force), span, span)
+
+
 def _ticks_right(seen: Bits, timing: Timing, decisions: int) -> NDArray[np.bool_]:
     """bool[D, L] from the tick mass's bits uint8[cycles, L]: each decision has its tick, in its cycle, and no other."""
     due = np.arange(timing.period) == timing.tick_cycle
@@ -141,7 +155,7 @@ def describe(
     return Mismatch(
         lane=lane,
         decision=d,
-        state=" ".join(f"{bit}={v}" for bit, v in zip(reference.state, itinerary.states[d, lane], strict=True)),
+        state=" ".join(f"{bit}={v}" for bit, v in zip(reference.states, itinerary.states[d, lane], strict=True)),
         inputs=" ".join(f"{bit}={v}" for bit, v in zip(reference.inputs, itinerary.inputs[d, lane], strict=True)),
         expected=" ".join(expected),
         got=" ".join(got),

@@ -32,7 +32,7 @@ class Itinerary:
     Attributes:
         inputs: uint8[D, L, I].
         states: uint8[D + 1, L, S], the reference before each decision and after the last.
-        outputs: uint8[D, L, O], what the reference makes of the inputs of each decision and the state after it.
+        outputs: uint8[D, L, O], the reference at the end of each decision: new state, inputs still held.
         total, unreachable, exhaustive, reachable_states: as in ``Proof``.
         method: in words.
     """
@@ -47,35 +47,41 @@ class Itinerary:
     method: str
 
 
-def make_itinerary(reference: Behaviour, decisions: int, seed: int) -> Itinerary:
-    """Choose transitions and walks: all transitions if they are known and few enough, else ``decisions`` of them."""
-    graph, wanted, exhaustive, method = _goals(reference, decisions, seed)
-    walks = plan(graph, wanted, _LANES, seed)
+def make_itinerary(
+    reference: Behaviour, decisions: int, seed: int, *, exhaustive: bool = True, lanes: int = _LANES
+) -> Itinerary:
+    """Choose transitions and walks: all transitions if they are known and few enough, else ``decisions`` of them.
+
+    ``exhaustive`` = False: ``decisions`` of them in any case. More than ``lanes`` lanes are used where some states
+    cannot be reached from others.
+    """
+    graph, wanted, exhaustive, method = _goals(reference, decisions, seed, exhaustive)
+    walks = plan(graph, wanted, lanes, seed)
     length = max(_LEAST_DECISIONS, max(map(len, walks)), 0 if exhaustive else -(-decisions // len(walks)))
     # Random inputs after the planned ones, vectors that the graph knows and others alike.
     inputs = np.random.default_rng([seed, 2]).integers(0, 2, (length, len(walks), len(reference.inputs)), np.uint8)
     for lane, walk in enumerate(walks):
         inputs[: len(walk), lane] = graph.vectors[walk]
 
-    states = np.empty((length + 1, len(walks), len(reference.state)), np.uint8)
+    states = np.empty((length + 1, len(walks), len(reference.states)), np.uint8)
     outputs = np.empty((length, len(walks), len(reference.outputs)), np.uint8)
     states[0] = reference.initial
     for d in range(length):
-        states[d + 1], _ = reference.step(states[d], inputs[d])
-        # read at the end of the decision: the registers have changed, the inputs have not
-        _, outputs[d] = reference.step(states[d + 1], inputs[d])
+        states[d + 1], outputs[d] = reference.step(states[d], inputs[d])
 
-    bits = len(reference.state) + len(reference.inputs)
-    known = len(graph.states) if reference.state else 1
+    bits = len(reference.states) + len(reference.inputs)
+    known = len(graph.states) if reference.states else 1
     total = known << len(reference.inputs) if graph.complete else 1 << bits
     unreachable = (1 << bits) - total
     return Itinerary(inputs, states, outputs, total, unreachable, exhaustive, known, method)
 
 
-def _goals(reference: Behaviour, decisions: int, seed: int) -> tuple[Graph, NDArray[np.bool_], bool, str]:
+def _goals(
+    reference: Behaviour, decisions: int, seed: int, exhaustive: bool
+) -> tuple[Graph, NDArray[np.bool_], bool, str]:
     """The graph to walk, bool[n, k] the moves to make, whether those are all there are, and words about it."""
     inputs = len(reference.inputs)
-    if not reference.state:
+    if not reference.states:
         if 2 * inputs <= EXHAUSTIVE_BITS:
             graph = history_graph(all_vectors(inputs))
             method = "every input vector after every other"
@@ -88,7 +94,8 @@ def _goals(reference: Behaviour, decisions: int, seed: int) -> tuple[Graph, NDAr
         return graph, graph.following >= 0, graph.complete, method
 
     graph = explore(reference, seed)
-    if graph.complete and graph.following.size <= max(decisions, 1 << EXHAUSTIVE_BITS):
+    most = max(decisions, 1 << EXHAUSTIVE_BITS) if exhaustive else decisions
+    if graph.complete and graph.following.size <= most:
         return graph, np.ones(graph.following.shape, dtype=bool), True, "every input vector in every reachable state"
     wanted = np.zeros(graph.following.shape, dtype=bool)
     reached = graph.first[1:]

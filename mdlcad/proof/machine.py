@@ -60,7 +60,7 @@ def explore(behaviour: Behaviour, seed: int) -> Graph:
     All input vectors are tried if there are few enough, else a seeded sample; the search stops at 4,096 states. With
     at most EXHAUSTIVE_BITS bits of state and inputs the graph is always complete.
     """
-    inputs, bits = len(behaviour.inputs), len(behaviour.state)
+    inputs, bits = len(behaviour.inputs), len(behaviour.states)
     small = inputs + bits <= EXHAUSTIVE_BITS or 1 << inputs <= _MAX_VECTORS
     vectors = all_vectors(inputs) if small else some_vectors(inputs, _MAX_VECTORS, seed)
     k = len(vectors)

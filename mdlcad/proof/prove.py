@@ -47,7 +47,7 @@ def prove(
         UsageError: the bits of the network are not those of the reference.
     """
     system = system_of(network)
-    _check_names(network, reference)
+    check_names(network, reference)
     steps_per_period = steps_per_period or steps_for(system)
     itinerary = make_itinerary(reference, decisions, seed)
     length, lanes, _ = itinerary.inputs.shape
@@ -79,7 +79,7 @@ def prove(
         margin, margin_mass = comparison.margin, comparison.margin_mass
         peaks = dict(zip(system.names, map(float, comparison.peak), strict=True))
 
-    unmapped = sorted(set(reference.state) - {register.bit for register in network.registers})
+    unmapped = sorted(set(reference.states) - {register.bit for register in network.registers})
     method = f"{itinerary.method}; time simulation from power-up, then random inputs to the end of every lane"
     if unmapped:
         method += f"; state bits without a mass, seen only through the others and the outputs: {', '.join(unmapped)}"
@@ -119,7 +119,9 @@ def _count(itinerary: Itinerary, lengths: NDArray[np.int64]) -> tuple[int, int]:
     return transitions, len(np.unique(states, axis=0)) if states.shape[1] else 1
 
 
-def _check_names(network: Network, reference: Behaviour) -> None:
+def check_names(network: Network, reference: Behaviour) -> None:
+    """UsageError unless the bits of sensors and actuators are the same and every register is a state bit."""
+
     def names(what: str, found: list[str], wanted: tuple[str, ...], subset: bool) -> None:
         if len(set(found)) != len(found):
             raise UsageError(f"the network has two masses for one {what} bit")
@@ -133,6 +135,6 @@ def _check_names(network: Network, reference: Behaviour) -> None:
     names("sensor", [port.bit for port in network.sensors], reference.inputs, False)
     names("actuator", [port.bit for port in network.actuators], reference.outputs, False)
     # synthesis may have merged state bits; what the others and the outputs show must still agree
-    names("register", [register.bit for register in network.registers], reference.state, True)
+    names("register", [register.bit for register in network.registers], reference.states, True)
     if network.registers and network.tick is None:
         raise UsageError("the network has registers but no tick")

@@ -14,16 +14,17 @@ WELL = 1.6
 
 @dataclass(frozen=True)
 class Machine:
-    """A behaviour given by a function (states, inputs) -> (next, outputs)."""
+    """A behaviour given by a function (states, inputs) -> (next states, outputs in ``states``)."""
 
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
-    state: tuple[str, ...]
+    states: tuple[str, ...]
     initial: np.ndarray
     rule: Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
 
     def step(self, states: np.ndarray, inputs: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        after, outputs = self.rule(states, inputs)
+        after, _ = self.rule(states, inputs)
+        _, outputs = self.rule(after, inputs)
         return after.astype(np.uint8), outputs.astype(np.uint8)
 
 

@@ -134,7 +134,7 @@ def test_an_output_that_remembers_the_last_input_is_caught() -> None:
 def test_a_diverging_network_is_no_proof() -> None:
     network, machine = toggle()
     wild = dataclasses.replace(network, dynamics=dataclasses.replace(network.dynamics, inertia=1e-7))
-    proof = prove(wild, machine)
+    proof = prove(wild, machine, steps_per_period=400)
     assert not proof.holds
     assert to_json(from_json(to_json(proof), Proof)) == to_json(proof)
 
@@ -202,7 +202,7 @@ def test_bits_must_agree() -> None:
     for wrong in (
         dataclasses.replace(machine, inputs=("X[0]", "Z[0]")),
         dataclasses.replace(machine, outputs=("V[0]",)),
-        dataclasses.replace(machine, state=("A[0]", "C[0]")),
+        dataclasses.replace(machine, states=("A[0]", "C[0]")),
         dataclasses.replace(machine, inputs=("X[0]", "Y[0]", "Z[0]")),
     ):
         with pytest.raises(UsageError):
