@@ -2,13 +2,25 @@
 
 from __future__ import annotations
 
+import shapely
 from shapely import Polygon
+from shapely.affinity import translate
 
 from mdlcad.mechanics.leaves import LeafKind, chain_of, eye_radius
 from mdlcad.mechanics.sizing import BiasSize
 from mdlcad.parts import palette
 from mdlcad.parts.body import Body, BodyKind
-from mdlcad.parts.leaf import Path, deflected_path, hub_block, leaf_start, meander_path, outward, wall_strip
+from mdlcad.parts.leaf import (
+    Path,
+    deflected_path,
+    heights,
+    hub_block,
+    leaf_envelope,
+    leaf_start,
+    meander_path,
+    outward,
+    wall_strip,
+)
 from mdlcad.parts.shapes import cut, disc, join, only, square
 from mdlcad.parts.stack import FRAME_REF, Hub, Stack
 from mdlcad.parts.unit import hub_pin_x
@@ -39,6 +51,12 @@ def bias_bodies(stack: Stack, hub: Hub, leaf: BiasLeaf, size: BiasSize) -> list[
         pin = square(hub_pin_x(stack, hub, leaf.side), hub.y, rules.pin)
         return only(cut(whole, [pin, disc(x, y, link.post_radius + link.post_fit)]))
 
+    def covered(path: Path, height: float) -> Polygon:
+        near = translate(hub_block(stack, hub, leaf.side), 0.0, height)
+        eye = disc(x, post_y, eye_radius(stack.process))
+        return shapely.union_all([near, wall_strip([*path, (x, post_y)], shape.wall), eye])
+
+    envelope = leaf_envelope(chain, heights(rules.throw), [size.offset], covered, (start, hub.y), direction)
     return [
         stack.sheet(
             f"bias.{leaf.mass}",
@@ -49,6 +67,7 @@ def bias_bodies(stack: Stack, hub: Hub, leaf: BiasLeaf, size: BiasSize) -> list[
             (hub.ref, FRAME_REF),
             palette.BIAS,
             shape_of(bent, post_y),
+            envelope,
         ),
         stack.upright(
             f"post.bias.{leaf.mass}",

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from shapely import Polygon
 
+from mdlcad.mechanics.carrier import rung_width
 from mdlcad.parts import palette
 from mdlcad.parts.body import Body, BodyKind
 from mdlcad.parts.leaf import hub_block
@@ -18,7 +19,7 @@ from mdlcad.routing.layout import EndKind, Rung, Side, Tab, Trunk
 def rung_body(stack: Stack, hubs: Mapping[str, Hub], rung: Rung) -> Body:
     """A rung with its hub block, its via pads and the holes of its pins."""
     rules = stack.sizing.rules
-    half = rules.bar_width / 2.0
+    half, high_half = rules.bar_width / 2.0, rung_width(rung, rules) / 2.0
     parts: list[Polygon] = []
     holes: list[Polygon] = []
     low, high = rung.left.x, rung.right.x
@@ -35,7 +36,7 @@ def rung_body(stack: Stack, hubs: Mapping[str, Hub], rung: Rung) -> Body:
         else:
             edge = end.x
         low, high = (edge, high) if side is Side.RIGHT else (low, edge)
-    parts.append(box(low, rung.y - half, high, rung.y + half))
+    parts.append(box(low, rung.y - high_half, high, rung.y + high_half))
     section = only(cut(join(parts), holes))
     name = rung.name if rung.name.startswith("rung.") else f"rung.{rung.name}"
     moves = (mass_ref(rung.net),)

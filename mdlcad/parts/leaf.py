@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+
 import numpy as np
+import shapely
 from shapely import Polygon
 
 from mdlcad.mechanics.flexure import Chain, Meander, deflect
 from mdlcad.parts.body import Body
-from mdlcad.parts.shapes import box, strip
+from mdlcad.parts.shapes import box, pieces, strip
 from mdlcad.parts.stack import Hub, Stack
 from mdlcad.routing.layout import Side
 
@@ -49,6 +52,31 @@ def deflected_path(chain: Chain, left: float, right: float, x: float, y: float, 
         for u, v in chain.frame.deformed(beam, solution, _AT)[0][0 if not points else 1 :]:
             points.append((x + direction * float(u), y + float(v)))
     return points
+
+
+def leaf_envelope(
+    chain: Chain,
+    lefts: Sequence[float],
+    rights: Sequence[float],
+    solid: Callable[[Path, float], Polygon],
+    start: tuple[float, float],
+    direction: float,
+) -> Polygon:
+    """All that a flexure covers while its left end takes every height of ``lefts`` and its right end of ``rights``.
+
+    Args:
+        solid: the body's polygon from a centre line and the left end's height.
+    """
+    x, y = start
+    shapes = [solid(deflected_path(chain, left, right, x, y, direction), left) for left in lefts for right in rights]
+    whole = shapely.union_all(shapes, grid_size=0.01)
+    outline = max(pieces(whole), key=lambda piece: piece.area)
+    return shapely.Polygon(outline.exterior).simplify(0.01)
+
+
+def heights(throw: float) -> list[float]:
+    """Heights from -throw to +throw, close enough to each other that thin walls leave no gaps."""
+    return [float(value) for value in np.linspace(-throw, throw, 11)]
 
 
 def wall_strip(path: Path, wall: float) -> Polygon:

@@ -1,3 +1,5 @@
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -23,7 +25,7 @@ BENDING = 2800.0 * 3.0 * 0.6**3 / 12.0
 def unit_load(path: list[tuple[float, float]]) -> tuple[float, float]:
     """(k_y, k_x) = EI over the integrals of (x - xm)^2 and (y - ym)^2 along the centre line (ends do not turn)."""
     points = np.array(path)
-    ends = list(zip(points, points[1:], strict=False))
+    ends = list(pairwise(points))
     lengths = [float(np.hypot(*(b - a))) for a, b in ends]
     middle = sum((a + b) / 2 * s for (a, b), s in zip(ends, lengths, strict=True)) / sum(lengths)
     second = np.zeros(2)
@@ -52,7 +54,7 @@ def test_a_straight_rocker_has_the_closed_form() -> None:
     a = 2.0
     turned = examine(chain, deflect(chain, a, -a))
     assert turned.eye == pytest.approx(1.5 * a / STRAIGHT.length, rel=2e-3)
-    assert examine(chain, deflect(chain, a, a)).eye == pytest.approx(0.0, abs=1e-9)
+    assert examine(chain, deflect(chain, a, a)).eye == pytest.approx(0.0, abs=1e-7)
 
 
 def test_a_straight_bias_leaf_is_a_guided_pinned_beam() -> None:
