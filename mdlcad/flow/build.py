@@ -73,6 +73,8 @@ def build(request: Request, say: Callable[[str], None]) -> tuple[Path, list[str]
     records: list[StageRecord] = []
     with new_folder(place) as folder:
         job = Job(source, library, process, request.seed, folder, request.workers)
+        # what the build leans on goes with it, so that it can be signed off again elsewhere
+        write_atomic(folder / "process.json", to_json(process))
         for step in STEPS[: len(loaded)]:
             if step.artefact is not None:
                 data = step.artefact(state)

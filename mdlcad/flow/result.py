@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from mdlcad.parts.plates import plates_of
 from mdlcad.flow.state import Job, State
+from mdlcad.parts.plates import plates_of
 from mdlcad.report.make import behaviour_of, extent_of, hashes_of, mechanics_of
 from mdlcad.report.report import Lvs, Report, StageRecord
 

@@ -9,12 +9,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
+from shapely import Polygon
+
 from mdlcad.artefact import to_json
 from mdlcad.errors import SignoffError
 from mdlcad.flow.state import Job, State, need
-from mdlcad.language import Device, read_device
+from mdlcad.language import Actuator, Device, Sensor, read_device
 from mdlcad.mapping import map_netlist
 from mdlcad.mechanics import size
+from mdlcad.mechanics.carrier import carrier_stiffnesses
 from mdlcad.parts import build_parts
 from mdlcad.parts.body import bodies_bytes
 from mdlcad.placement.ports import PortPlace
@@ -93,10 +96,17 @@ def _place_and_route(job: Job, state: State, progress: Progress) -> State:
 
 
 def _build_parts(job: Job, state: State, progress: Progress) -> State:
-    bodies = build_parts(
-        need(state.network), need(state.placement), need(state.layout), need(state.sizing), job.process
+    network, placement, layout, sizing = (
+        need(state.network),
+        need(state.placement),
+        need(state.layout),
+        need(state.sizing),
     )
-    return replace(state, bodies=bodies)
+    return replace(
+        state,
+        bodies=build_parts(network, placement, layout, sizing, job.process, Polygon(placement.boundary)),
+        carriers=carrier_stiffnesses(network, placement, layout, sizing, job.process),
+    )
 
 
 def _check_geometry(job: Job, state: State, progress: Progress) -> State:
@@ -106,6 +116,7 @@ def _check_geometry(job: Job, state: State, progress: Progress) -> State:
         need(state.placement),
         need(state.layout),
         need(state.bodies),
+        state.carriers,
         job.process,
     )
     return replace(state, rules=rules)
@@ -140,7 +151,8 @@ def port_places(device: Device) -> tuple[PortPlace, ...]:
     """Every sensor and actuator bit at its place on the boundary, in grid units."""
     lines = {line.name: line for line in device.boundary}
     places = []
-    for port in (*device.sensors, *device.actuators):
+    ports: tuple[Sensor | Actuator, ...] = (*device.sensors, *device.actuators)
+    for port in ports:
         for index, place in enumerate(port.places):
             line = lines[place.line]
             dx, dy = line.end[0] - line.start[0], line.end[1] - line.start[1]
@@ -226,7 +238,7 @@ STEPS: tuple[Step, ...] = (
     Step(
         "parts",
         ("network", "placement", "layout", "sizing"),
-        ("bodies",),
+        ("bodies", "carriers"),
         _build_parts,
         lambda s: f"{len(need(s.bodies))} bodies",
         lambda s: bodies_bytes(need(s.bodies)),
@@ -234,7 +246,7 @@ STEPS: tuple[Step, ...] = (
     ),
     Step(
         "drc",
-        ("network", "placement", "layout", "sizing", "bodies"),
+        ("network", "placement", "layout", "sizing", "bodies", "carriers"),
         ("rules",),
         _check_geometry,
         lambda s: f"{len(need(s.rules).errors)} errors, {len(need(s.rules).findings)} findings",

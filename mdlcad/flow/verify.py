@@ -6,17 +6,18 @@ from collections.abc import Callable
 from pathlib import Path
 
 import shapely
+from shapely import Polygon
 
 from mdlcad.artefact import checksum
 from mdlcad.errors import SignoffError, UsageError
 from mdlcad.export.mesh import check_stl
-from mdlcad.parts.plates import plates_of
 from mdlcad.flow.folder import REPORT, load
 from mdlcad.language import Device
 from mdlcad.mechanics import Process, Sizing
 from mdlcad.mechanics.carrier import carrier_stiffnesses
 from mdlcad.network.model import Network
 from mdlcad.parts import build_parts
+from mdlcad.parts.plates import plates_of
 from mdlcad.placement.placement import Placement
 from mdlcad.proof.prove import prove
 from mdlcad.proof.reference import build_reference
@@ -55,7 +56,7 @@ def verify(folder: Path, workers: int, say: Callable[[str], None]) -> list[str]:
     step("behaviour", [] if proof.holds else [str(item) for item in proof.first_mismatches] or ["nothing was checked"])
     sizing, process = load(folder, "sizing.json", Sizing), load(folder, "process.json", Process)
     placement, layout = load(folder, "placement.json", Placement), load(folder, "layout.json", Layout)
-    bodies = build_parts(network, placement, layout, sizing, process)
+    bodies = build_parts(network, placement, layout, sizing, process, Polygon(placement.boundary))
     carriers = carrier_stiffnesses(network, placement, layout, sizing, process)
     rules = check_geometry(network, sizing, placement, layout, bodies, carriers, process)
     step("drc", [f"{item.rule}: {', '.join(item.bodies)}: {item.message}" for item in rules.errors])

@@ -25,14 +25,16 @@ def mechanics_of(sizing: Sizing | None, carriers: Sequence[CarrierStiffness]) ->
     if sizing is None:
         return None
     strains = [unit.strain for unit in sizing.units]
-    strains += [item.leaf.strain for item in (*sizing.couplers, *sizing.biases)]
+    strains += [coupler.leaf.strain for coupler in sizing.couplers] + [bias.leaf.strain for bias in sizing.biases]
     return Mechanics(
         strain_worst=max(strains),
         carrier_stiffness_ratio_worst=min((item.ratio for item in carriers), default=None),
         throw_mm=sizing.rules.throw,
         clock_stroke_mm=sizing.rules.clock_throw,
         compensation_difference_worst=max(abs(u.compensation - u.compensation_network) for u in sizing.units),
-        warnings=tuple(f"{item.subject}: {item.message}: {item.value:.4g}, limit {item.limit:.4g}" for item in sizing.findings),
+        warnings=tuple(
+            f"{item.subject}: {item.message}: {item.value:.4g}, limit {item.limit:.4g}" for item in sizing.findings
+        ),
     )
 
 

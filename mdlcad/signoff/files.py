@@ -16,8 +16,8 @@ def check_bodies(bodies: Sequence[Body], found: Sequence[ReadBody]) -> list[str]
     """Differences between the bodies and what a STEP file holds, in words: names, outlines, heights, volumes."""
     problems = []
     by_name: dict[str, list[ReadBody]] = {}
-    for body in found:
-        by_name.setdefault(body.name, []).append(body)
+    for item in found:
+        by_name.setdefault(item.name, []).append(item)
     for name in sorted(set(by_name) - {body.name for body in bodies}):
         problems.append(f"{name}: is in the STEP file but not in the device")
     for body in bodies:
@@ -34,5 +34,7 @@ def check_bodies(bodies: Sequence[Body], found: Sequence[ReadBody]) -> list[str]
             problems.append(f"{body.name}: lies at another height in the STEP file than drawn")
         difference = read.section.symmetric_difference(section).area
         if difference > AREA_TOLERANCE_MM2:
-            problems.append(f"{body.name}: its outline in the STEP file differs by {difference:.4f} mm2 from that drawn")
+            problems.append(
+                f"{body.name}: its outline in the STEP file differs by {difference:.4f} mm2 from that drawn"
+            )
     return problems

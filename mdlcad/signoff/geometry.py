@@ -6,13 +6,77 @@ from collections.abc import Sequence
 
 from shapely import Polygon
 
-from mdlcad.parts.plates import plates_of
+from mdlcad.errors import SignoffError
 from mdlcad.mechanics import Process, Sizing
 from mdlcad.mechanics.carrier import CarrierStiffness
 from mdlcad.network.model import Network
 from mdlcad.parts.body import Body
+from mdlcad.parts.plates import plates_of
 from mdlcad.placement.placement import Placement
 from mdlcad.routing.check import check_layout
 from mdlcad.routing.layout import Layout
-from mdlcad.signoff.drc import Finding, check_bed, check_containment, check_cut, check_motion
+from mdlcad.signoff.drc import RULES, Finding, check_bed, check_containment, check_cut, check_motion
 from mdlcad.signoff.summary import DesignRules
+
+# Rules that measure how well the parts work rather than whether they can be made and move. They are reported with
+# their numbers; the layout stays legal, and a stiffer or thicker sheet in the process mends them.
+WARNED = ("carrier_stiffness",)
+
+
+def check_geometry(
+    network: Network,
+    sizing: Sizing,
+    placement: Placement,
+    layout: Layout,
+    bodies: Sequence[Body],
+    carriers: Sequence[CarrierStiffness],
+    process: Process,
+) -> DesignRules:
+    """Run every rule; the findings of all.
+
+    Raises:
+        SignoffError: there is nothing to check.
+    """
+    if not bodies or not network.masses:
+        raise SignoffError("there are no bodies to check")
+    rules = sizing.rules
+    findings = check_motion(bodies, rules.gap)
+    findings += check_containment(bodies, Polygon(placement.boundary))
+    for plate, members in plates_of(bodies).items():
+        findings += check_cut(plate, members, process.machine.min_wall, process.machine.min_gap)
+    findings += check_bed(bodies, process.machine.bed)
+    where = {mass.mass: (mass.x, mass.y) for mass in placement.masses}
+    findings += [
+        Finding(item.rule, item.names, item.x, item.y, 0.0, 0.0, item.message)
+        for item in check_layout(network, placement, layout, rules)
+    ]
+    findings += _of_sizing(sizing, where)
+    targets = {coupling.name: coupling.target for coupling in network.couplings}
+    findings += [
+        Finding(
+            "carrier_stiffness",
+            (f"coupler.{item.coupling}",),
+            *where[targets[item.coupling]],
+            item.ratio,
+            process.link.carrier_ratio,
+            f"its carrier is {item.ratio:.1f} times as stiff as it is, {process.link.carrier_ratio:g} times is needed",
+        )
+        for item in carriers
+        if item.ratio < process.link.carrier_ratio
+    ]
+    findings += [
+        Finding("unrealised_coupling", (name,), *where[targets.get(name, name)], 1.0, 0.0, reason)
+        for name, reason in layout.unrealised
+    ]
+    ran = sorted({*RULES, *WARNED, *(item.rule for item in findings)})
+    counts = {rule: sum(item.rule == rule for item in findings) for rule in ran}
+    return DesignRules(counts, tuple(findings), WARNED)
+
+
+def _of_sizing(sizing: Sizing, where: dict[str, tuple[float, float]]) -> list[Finding]:
+    found = []
+    for item in sizing.findings:
+        subject = item.subject.partition(".")[2]
+        place = where.get(subject.rpartition("->")[2], (0.0, 0.0))
+        found.append(Finding(item.rule, (item.subject,), *place, item.value, item.limit, item.message))
+    return found
