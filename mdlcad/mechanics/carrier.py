@@ -40,7 +40,7 @@ class CarrierStiffness:
 
 
 def rung_width(rung: Rung, rules: LayoutRules) -> float:
-    """Height in y of a rung's bar, mm: a row keeps the height of a hub free for it, but only a bar's for a tab's rung."""
+    """Height in y of a rung's bar, mm: a row keeps the height of a hub free for it, a bar's for a tab's."""
     to_tab = EndKind.TAB in (rung.left.kind, rung.right.kind)
     return rules.bar_width if to_tab else max(rules.bar_width, rules.hub_height)
 

@@ -100,7 +100,7 @@ def rocker_chain(meander: Meander, sheet: Sheet, eye_radius: float) -> Chain:
 
 
 def bias_chain(meander: Meander, sheet: Sheet, eye_radius: float) -> Chain:
-    """A meander from the hub's block (left) to an eye that turns freely on a fixed post (right)."""
+    """A meander from the hub's block (left) to a slotted eye that turns and slides along x on a fixed post (right)."""
     path = meander.path()
     nodes = [*path, (meander.length + eye_radius, 0.0)]
     count = len(path)
@@ -114,7 +114,7 @@ def signal_matrix(chain: Chain) -> Array:
     keep = [dof(chain.left, Y), dof(chain.right, Y)]
     held = chain.clamped(chain.left)
     if chain.eye == chain.right:
-        return chain.frame.condense(keep, [*held, dof(chain.right, X)])
+        return chain.frame.condense(keep, held)
     held += chain.clamped(chain.right)
     if chain.eye is not None:
         held += [dof(chain.eye, X), dof(chain.eye, Y)]
@@ -122,23 +122,31 @@ def signal_matrix(chain: Chain) -> Array:
 
 
 def axial_stiffness(chain: Chain) -> float:
-    """Stiffness in x, N/mm, of the stretch from the left end to the eye (or the right end) at no deflection in y."""
+    """Stiffness in x, N/mm, of the stretch from the left end to the eye (or the right end) at no deflection in y.
+
+    0 for a bias leaf, whose slotted eye lets it slide.
+    """
+    if chain.eye == chain.right:
+        return 0.0
     far = chain.right if chain.eye is None else chain.eye
     held = [dof(far, X), dof(far, Y), dof(chain.left, Y), dof(chain.left, TURN)]
     if far != chain.right:
         held += [dof(chain.right, i) for i in (X, Y, TURN)]
-    elif chain.eye is None:
+    else:
         held.append(dof(far, TURN))
     return float(chain.frame.condense([dof(chain.left, X)], held)[0, 0])
 
 
+def drawn_in(chain: Chain, solution: Solution) -> float:
+    """How far a bias leaf's eye is drawn towards the hub, mm: what the frame gives, and the shortening."""
+    return examine(chain, solution).shortening - float(solution.displacements[dof(chain.right, X)])
+
+
 def deflect(chain: Chain, left: float, right: float) -> Solution:
-    """The flexure with its ends displaced in y; x held, end blocks do not turn, eyes turn freely."""
+    """The flexure with its ends displaced in y; blocks are held in x and do not turn, eyes turn freely."""
     prescribed = {dof(chain.left, Y): left, dof(chain.right, Y): right}
     prescribed |= dict.fromkeys(chain.clamped(chain.left), 0.0)
-    if chain.eye == chain.right:
-        prescribed[dof(chain.right, X)] = 0.0
-    else:
+    if chain.eye != chain.right:
         prescribed |= dict.fromkeys(chain.clamped(chain.right), 0.0)
         if chain.eye is not None:
             prescribed |= {dof(chain.eye, X): 0.0, dof(chain.eye, Y): 0.0}

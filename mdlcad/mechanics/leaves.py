@@ -33,6 +33,7 @@ class LeafSize:
         axial: stiffness in x, N/mm.
         quartic: Q of 1/4 Q y^4, N/mm^3, y being the deflection.
         strain, slope, eye_turn, clearance, sweep: at the worst deflection; see ``flexure.Deflection``.
+        slot: how far the eye of a bias leaf is drawn in, mm: (least, most); (0, 0) for the others.
         misses: names of the limits that no candidate of the template keeps; empty if all is well.
     """
 
@@ -48,6 +49,7 @@ class LeafSize:
     eye_turn: float
     clearance: float
     sweep: float
+    slot: tuple[float, float]
     misses: tuple[str, ...]
 
 
@@ -136,6 +138,10 @@ def _examine(
     one = flexure.examine(chain, flexure.deflect(chain, 1.0, 0.0))
     quartic = 2.0 * axial * one.shortening**2
     worst = _worst(seen)
+    slot = (0.0, 0.0)
+    if kind is LeafKind.BIAS:
+        drawn = [flexure.drawn_in(chain, flexure.deflect(chain, *case)) for case in (*cases, (0.0, 0.0))]
+        slot = (math.floor(min(drawn) * 100.0) / 100.0, math.ceil(max(drawn) * 100.0) / 100.0)
     limits = {
         "strain": worst.strain <= sheet.strain_limit,
         "slope": worst.slope <= link.slope_limit,
@@ -155,6 +161,7 @@ def _examine(
         eye_turn=trim(worst.eye),
         clearance=trim(worst.clearance),
         sweep=trim(worst.sweep),
+        slot=slot,
         misses=tuple(name for name, holds in limits.items() if not holds),
     )
 

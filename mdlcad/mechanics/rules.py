@@ -33,6 +33,7 @@ class LayoutRules:
         post_offset: for every negative coupling, distance in x from the hub's centre to its pivot.
         link_plates: names of the rung plates, bottom to top ("H0", "H1", ...); posts reach down from the top.
         bias_offsets: for every biased mass, where its post stands in y, measured from its row's centre.
+        bias_ends: for every biased mass, distance in x from the hub's centre to the far end of its leaf's slotted eye.
         eye_radius: outer radius of the eye that turns on a post (it stands still, but for its own row's flexure).
     """
 
@@ -58,3 +59,4 @@ class LayoutRules:
     link_plates: tuple[str, ...]
     bias_offsets: dict[str, float] = field(default_factory=dict)
     eye_radius: float = 0.0
+    bias_ends: dict[str, float] = field(default_factory=dict)

@@ -47,7 +47,7 @@ class BiasSize:
     """The bias leaf of one mass.
 
     Attributes:
-        offset: place of the post in y from the row's centre, mm: -q F0 over the leaf's (stiffened) stiffness.
+        offset: place of the post in y from the row's centre, mm: -q F0 over the leaf's stiffness.
         bias: q that it gives; self_stiffness: what it adds to its mass, in units of S0.
     """
 
@@ -56,7 +56,6 @@ class BiasSize:
     offset: float
     bias: float
     self_stiffness: float
-    quartic: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -157,7 +156,6 @@ def _coupler_leaf(coupling: Coupling, process: Process, law: UnitLaw, throw: flo
 
 def _biases(network: Network, process: Process, law: UnitLaw, throw: float) -> tuple[BiasSize, ...]:
     stiffness = process.link.bias_ratio * law.stiffness_unit
-    scale = process.unit.throw_unit**2 / law.stiffness_unit
     sized: dict[float, LeafSize] = {}
     result = []
     for mass in network.masses:
@@ -171,27 +169,17 @@ def _biases(network: Network, process: Process, law: UnitLaw, throw: float) -> t
             except ValueError as error:
                 raise UsageError(f"bias of {mass.name}: {error}") from error
         leaf = sized[force]
-        offset = _preload(leaf.own, leaf.quartic, force)
+        offset = force / leaf.own
         result.append(
             BiasSize(
                 mass=mass.name,
                 leaf=leaf,
                 offset=round(-math.copysign(offset, mass.bias), 4),
                 bias=mass.bias,
-                self_stiffness=trim((leaf.own + 3.0 * leaf.quartic * offset**2) / law.stiffness_unit),
-                quartic=trim(leaf.quartic * scale),
+                self_stiffness=trim(leaf.own / law.stiffness_unit),
             )
         )
     return tuple(result)
-
-
-def _preload(stiffness: float, quartic: float, force: float) -> float:
-    """The offset d at which stiffness d + quartic d^3 = force, by Newton's method (convex in d > 0)."""
-    offset = force / stiffness
-    for _ in range(50):
-        excess = stiffness * offset + quartic * offset**3 - force
-        offset -= excess / (stiffness + 3.0 * quartic * offset**2)
-    return offset
 
 
 def _self_terms(network: Network, couplers: tuple[CouplerSize, ...], biases: tuple[BiasSize, ...]) -> dict[str, float]:
@@ -267,6 +255,10 @@ def _rules(
         link_plates=tuple(plate.name for plate in process.plates(PlateRole.RUNG)),
         bias_offsets={item.mass: item.offset for item in biases},
         eye_radius=eye_radius(process),
+        bias_ends={
+            item.mass: _up(hub_half + item.leaf.reach + eye_radius(process) + max(0.0, item.leaf.slot[1]))
+            for item in biases
+        },
     )
 
 

@@ -6,6 +6,7 @@ import shapely
 from shapely import Polygon
 from shapely.affinity import translate
 
+from mdlcad.mechanics.flexure import deflect, drawn_in, examine
 from mdlcad.mechanics.leaves import LeafKind, chain_of, eye_radius
 from mdlcad.mechanics.sizing import BiasSize
 from mdlcad.parts import palette
@@ -41,20 +42,34 @@ def bias_bodies(stack: Stack, hub: Hub, leaf: BiasLeaf, size: BiasSize) -> list[
     chain = chain_of(LeafKind.BIAS, shape, stack.process)
     straight = meander_path(shape, start, hub.y, direction)
     bent = deflected_path(chain, 0.0, size.offset, start, hub.y, direction)
+    settled = deflect(chain, 0.0, size.offset)
     x = start + direction * size.leaf.reach
     root = (start - direction * 0.2, hub.y)  # 0.2 mm into the block, so that no slit is left there
     post_y = round(hub.y + size.offset, 4)
 
-    def shape_of(path: Path, y: float) -> Polygon:
-        eye = disc(x, y, eye_radius(stack.process))
-        whole = join([hub_block(stack, hub, leaf.side), wall_strip([root, *path, (x, y)], shape.wall), eye])
+    def eye(radius: float, at: float, y: float) -> Polygon:
+        """The slotted eye: discs about where the post is when the leaf is least and most drawn in."""
+        ends = [disc(at + direction * slide, y, radius) for slide in size.leaf.slot]
+        return shapely.union_all(ends).convex_hull
+
+    def shape_of(path: Path, y: float, drawn: float, shortening: float) -> Polygon:
+        at = x - direction * drawn
+        # the frame's solution leaves lengths along x as they are: draw the shortening in, evenly
+        walls = [(px - shortening * (px - start) / size.leaf.reach, py) for px, py in path]
+        whole = join(
+            [
+                hub_block(stack, hub, leaf.side),
+                wall_strip([root, *walls, (at, y)], shape.wall),
+                eye(eye_radius(stack.process), at, y),
+            ]
+        )
         pin = square(hub_pin_x(stack, hub, leaf.side), hub.y, rules.pin)
-        return only(cut(whole, [pin, disc(x, y, link.post_radius + link.post_fit)]))
+        return only(cut(whole, [pin, eye(link.post_radius + link.post_fit, at, y)]))
 
     def covered(path: Path, height: float) -> Polygon:
         near = translate(hub_block(stack, hub, leaf.side), 0.0, height)
-        eye = disc(x, post_y, eye_radius(stack.process))
-        return shapely.union_all([near, wall_strip([*path, (x, post_y)], shape.wall), eye])
+        rings = [eye(eye_radius(stack.process), x - direction * slide, post_y) for slide in size.leaf.slot]
+        return shapely.union_all([near, wall_strip([*path, (x, post_y)], shape.wall), *rings])
 
     envelope = leaf_envelope(chain, heights(rules.throw), [size.offset], covered, (start, hub.y), direction)
     return [
@@ -62,11 +77,11 @@ def bias_bodies(stack: Stack, hub: Hub, leaf: BiasLeaf, size: BiasSize) -> list[
             f"bias.{leaf.mass}",
             BodyKind.BIAS,
             leaf.plate,
-            shape_of(straight, hub.y),
+            shape_of(straight, hub.y, 0.0, 0.0),
             (size.leaf.sweep, rules.throw),
             (hub.ref, FRAME_REF),
             palette.BIAS,
-            shape_of(bent, post_y),
+            shape_of(bent, post_y, drawn_in(chain, settled), examine(chain, settled).shortening),
             envelope,
         ),
         stack.upright(

@@ -22,17 +22,23 @@ from mdlcad.routing.layout import Layout, Side
 
 
 def build_parts(
-    network: Network, placement: Placement, layout: Layout, sizing: Sizing, process: Process, device_boundary: Polygon
+    network: Network,
+    placement: Placement,
+    layout: Layout,
+    sizing: Sizing,
+    process: Process,
+    device_boundary: Polygon | None = None,
 ) -> tuple[Body, ...]:
     """All bodies, bottom to top as far as they lie in plates; pins, posts and shims come with what they belong to.
 
     Args:
-        device_boundary: the device's outline in mm (``placement.boundary`` as a polygon).
+        device_boundary: the device's outline in mm; the placement's own if not given.
 
     Raises:
         UsageError: the process lacks a plate that the network needs, or the boundary leaves a clock plate in pieces.
         ValueError: the layout contradicts itself or the sizing.
     """
+    boundary = Polygon(placement.boundary) if device_boundary is None else device_boundary
     stack = make_stack(process, sizing, network.dynamics.phases)
     hubs = {place.mass: Hub(place) for place in placement.masses}
     standing = list(hubs.values())
@@ -60,17 +66,17 @@ def build_parts(
     ]
     clock_pins = [clock_pin(stack, hubs[unit.mass], unit) for unit in sizing.units]
     hub_pins = [hub_pin(stack, hubs[mass], side, plates) for (mass, side), plates in sorted(used.items())]
-    found = ribs(stack, standing, device_boundary)
-    posts = rib_posts(stack, standing, found, device_boundary)
-    handle = handle_place(stack, device_boundary)
+    found = ribs(stack, standing, boundary)
+    posts = rib_posts(stack, standing, found, boundary)
+    handle = handle_place(stack, boundary)
     notches: dict[str, list[Polygon]] = {plate: [handle_notch(stack, handle)] for plate in stack.clock_plates}
     for tab in layout.tabs:
         notches.setdefault(tab.plate, []).extend(tab_notch(stack, tab))
     hanging = [body for body in flexures if body.kind is BodyKind.POST]
     return (
-        *frame_bodies(stack, device_boundary, found, [*posts, *hanging], notches),
+        *frame_bodies(stack, boundary, found, [*posts, *hanging], notches),
         *posts,
-        *clock_plates(stack, device_boundary, handle, clock_pins, posts),
+        *clock_plates(stack, boundary, handle, clock_pins, posts),
         *clock_pins,
         *units,
         *hub_pins,
