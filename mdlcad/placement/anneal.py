@@ -1,0 +1,410 @@
+"""Simulated annealing of slots, channel sides and bias sides: a numba kernel with exact incremental costs.
+
+A net is added to or removed from running tallies, so a move costs only the nets and channels it touches. The tallies:
+items per hub side against plates, posts per hub side, straight rungs against what must lie under them, and which nets
+must run left of which. The trunks of a touched channel are then packed onto tracks (``_tracks``).
+
+All compiled code is in this one file, because numba's cache does not notice a change in another.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numba
+import numpy as np
+import numpy.typing as npt
+
+from mdlcad.placement.problem import LEFT_WALL, UP_OR_DOWN, Ints, Problem
+from mdlcad.placement.state import DEEP, State
+
+HARD = 12.0
+"""Cost of one violated hard rule; a wire of one row costs WIRE."""
+WIRE = 0.06
+ORDER = 0.03
+
+# columns of State.row, the tallies of one (channel, row); A hangs on the left of the channel, B on the right
+VIA_A, VIA_B, BIAS_A, BIAS_B, STRAIGHT, POST_A, POST_B, SPOST_A, SPOST_B, COUNT_A, COUNT_B = range(11)
+SLOT, BIAS_SIDE = 0, 1
+
+
+@numba.njit(cache=True)
+def _row_cost(p: Problem, s: State, channel: int, row: int) -> float:
+    t = s.row[channel, row]
+    plates = int(p.sizes[2])
+    straight = t[STRAIGHT]
+    over = max(t[VIA_A] + t[BIAS_A], t[VIA_B] + t[BIAS_B]) - plates
+    cost = 0
+    if straight > 0:
+        over = max(t[VIA_A], t[VIA_B]) + straight + max(t[BIAS_A], t[BIAS_B]) - plates
+        cost += (t[POST_A] + t[POST_B] > 0) + (t[SPOST_A] + t[SPOST_B] > 1) + (p.is_open[channel, row] == 0)
+    cost += max(0, over)
+    cost += max(0, t[POST_A] + t[BIAS_A] + t[SPOST_A] - 1) + max(0, t[POST_B] + t[BIAS_B] + t[SPOST_B] - 1)
+    return HARD * cost
+
+
+@numba.njit(cache=True)
+def _order(s: State, a: int, b: int, sign: int) -> float:
+    """One row more (or less) asks net-channel a to run left of b."""
+    old = s.before[a, b]
+    s.before[a, b] = old + sign
+    if (sign > 0 and old == 0) or (sign < 0 and old == 1):
+        return sign * ORDER
+    return 0.0
+
+
+@numba.njit(cache=True)
+def _via(s: State, net: int, channel: int, row: int, side: int, posted: bool, sign: int) -> float:
+    """Add (+1) or remove (-1) one trunk-borne item of net-channel ``net``; side 0 hangs on the left of the channel."""
+    cost = 0.0
+    t = s.row[channel, row]
+    t[VIA_A + side] += sign
+    mine = s.items[channel, row, side]
+    code = 2 * net + posted
+    if sign < 0:
+        t[COUNT_A + side] -= 1
+        n = t[COUNT_A + side]
+        for i in range(n + 1):
+            if mine[i] == code:
+                mine[i] = mine[n]
+                break
+    for k in range(2):
+        other = s.items[channel, row, k]
+        for i in range(t[COUNT_A + k]):
+            j, posted_j = other[i] // 2, other[i] % 2
+            if j == net:
+                continue
+            if k != side:
+                a, b = (net, j) if side == 0 else (j, net)
+            elif posted != (posted_j == 1):
+                # the one with the post must reach furthest from their hub
+                a, b = (net, j) if (posted_j == 1) == (side == 0) else (j, net)
+            else:
+                continue
+            cost += _order(s, a, b, sign)
+    if sign > 0:
+        mine[t[COUNT_A + side]] = code
+        t[COUNT_A + side] += 1
+    return cost
+
+
+@numba.njit(cache=True)
+def _piece(p: Problem, s: State, net: int, channel: int, row: int, side: int, posted: bool, sign: int) -> float:
+    """One trunk-borne item with its row's penalty."""
+    cost = -_row_cost(p, s, channel, row)
+    cost += _via(s, net, channel, row, side, posted, sign)
+    if posted:
+        s.row[channel, row, POST_A + side] += sign
+    return cost + _row_cost(p, s, channel, row)
+
+
+@numba.njit(cache=True)
+def _half(p: Problem, s: State, mass: int, side: int, sign: int) -> float:
+    """One net's pieces in the channel left (0) or right (1) of its source."""
+    slot = s.mass[mass, SLOT]
+    column, row = p.slot[slot, 0], p.slot[slot, 1]
+    channel = column + side
+    targets, tabs, chosen = 0, 0, -1
+    straight = False
+    for i in range(p.mass[mass, 0], p.mass[mass + 1, 0]):
+        coupling = p.outs[i]
+        there = s.mass[p.coupling[coupling, 1], SLOT]
+        across = p.slot[there, 0] - column
+        if across == 2 * side - 1 or (across == 0 and s.side[coupling] == side):
+            targets += 1
+            chosen = coupling
+            straight = across != 0 and p.slot[there, 1] == row
+    for tab in range(p.mass[mass, 2], p.mass[mass + 1, 2]):
+        if p.tab[tab, 0] == channel:
+            tabs += 1
+            straight = p.tab[tab, 4] != UP_OR_DOWN and p.tab[tab, 3] == row
+    if targets + tabs == 0:
+        return 0.0
+    if targets + tabs == 1 and straight:
+        cost = -_row_cost(p, s, channel, row)
+        s.row[channel, row, STRAIGHT] += sign
+        if targets == 1 and p.coupling[chosen, 2]:
+            s.row[channel, row, SPOST_A + side] += sign
+        return cost + _row_cost(p, s, channel, row)
+    net = 2 * mass + side
+    s.dirty[channel] = 1
+    low, high = row, row
+    x_low, x_high = -1e9, 1e9
+    free = tabs > 0
+    if side == 1:
+        x_low = p.hub_x[column] + p.sizes[0]
+        x_high = 1e9 if free else p.limits[channel, row, 2]
+    else:
+        x_high = p.hub_x[column] - p.sizes[0]
+        x_low = -1e9 if free else p.limits[channel, row, 3]
+    cost = _piece(p, s, net, channel, row, 1 - side, False, sign)
+    for i in range(p.mass[mass, 0], p.mass[mass + 1, 0]):
+        coupling = p.outs[i]
+        there = s.mass[p.coupling[coupling, 1], SLOT]
+        across = p.slot[there, 0] - column
+        if across == 2 * side - 1 or (across == 0 and s.side[coupling] == side):
+            at = p.slot[there, 1]
+            low, high = min(low, at), max(high, at)
+            hub = 0 if p.slot[there, 0] == channel - 1 else 1
+            if hub == 0:
+                x_low = max(x_low, p.hub_x[channel - 1] + p.reach[coupling])
+                x_high = x_high if free else min(x_high, p.limits[channel, at, 2])
+            else:
+                x_high = min(x_high, p.hub_x[channel] - p.reach[coupling])
+                x_low = x_low if free else max(x_low, p.limits[channel, at, 3])
+            cost += _piece(p, s, net, channel, at, hub, p.coupling[coupling, 2] != 0, sign)
+    for tab in range(p.mass[mass, 2], p.mass[mass + 1, 2]):
+        if p.tab[tab, 0] == channel:
+            low, high = min(low, p.tab[tab, 1]), max(high, p.tab[tab, 2])
+            kind = p.tab[tab, 4]
+            for at in range(p.tab[tab, 1], p.tab[tab, 2] + 1):
+                # a tab in y stands between what hangs on the left and what hangs on the right
+                for hub in range(2):
+                    if kind == UP_OR_DOWN or hub == (0 if kind == LEFT_WALL else 1):
+                        cost += _piece(p, s, net, channel, at, hub, False, sign)
+    cost += sign * WIRE * (high - low)
+    for at in range(low, high + 1):
+        x_low = max(x_low, p.limits[channel, at, 0])
+        x_high = min(x_high, p.limits[channel, at, 1])
+    if sign > 0:
+        s.window[net, 0], s.window[net, 1] = x_low, x_high
+        s.rows[net, 0], s.rows[net, 1] = low, high
+        s.trunks[channel, s.count[channel]] = net
+        s.count[channel] += 1
+    else:
+        n = s.count[channel] - 1
+        s.count[channel] = n
+        for i in range(n + 1):
+            if s.trunks[channel, i] == net:
+                s.trunks[channel, i] = s.trunks[channel, n]
+                break
+    return cost
+
+
+@numba.njit(cache=True)
+def _tracks(p: Problem, s: State, channel: int) -> float:
+    """Penalty of a channel's trunks: how far past their windows the best-first packing from the left pushes them.
+
+    Each step takes, of the trunks that could stand furthest left now, the one with the tightest right limit (limits
+    are passed back along the order that rows ask for). Zero means that legal tracks exist: the packing is one.
+    """
+    n = s.count[channel]
+    pitch = p.sizes[1]
+    nets, at, due, waits = s.trunks[channel], s.at, s.due, s.waits
+    cost = 0.0
+    for i in range(n):
+        at[i], due[i] = s.window[nets[i], 0], s.window[nets[i], 1]
+        waits[i] = 0
+        if due[i] < at[i] - 1e-6:
+            cost += HARD * (1 + (at[i] - due[i]) / pitch)
+            due[i] = at[i]
+        for j in range(n):
+            if s.before[nets[j], nets[i]] > 0:
+                waits[i] += 1
+    for _ in range(2):
+        for i in range(n):
+            for j in range(n):
+                if s.before[nets[i], nets[j]] > 0:
+                    due[i] = min(due[i], due[j] - pitch)
+    for left in range(n, 0, -1):
+        first = 1e18
+        for i in range(n):
+            if waits[i] == 0:
+                first = min(first, at[i])
+        if first > 1e17:
+            # nets that wait for one another in a ring
+            return cost + HARD * left
+        best = -1
+        for i in range(n):
+            if waits[i] == 0 and at[i] < first + pitch / 2 and (best < 0 or due[i] < due[best]):
+                best = i
+        late = at[best] - s.window[nets[best], 1]
+        if late > 1e-6 and s.window[nets[best], 0] <= s.window[nets[best], 1]:
+            cost += HARD * (0.5 + late / pitch)
+        waits[best] = -1
+        low, high = s.rows[nets[best], 0], s.rows[nets[best], 1]
+        for i in range(n):
+            if waits[i] >= 0:
+                order = s.before[nets[best], nets[i]] > 0
+                if order:
+                    waits[i] -= 1
+                if order or (s.rows[nets[i], 0] <= high and low <= s.rows[nets[i], 1]):
+                    at[i] = max(at[i], at[best] + pitch)
+    return cost
+
+
+@numba.njit(cache=True)
+def _bias(p: Problem, s: State, mass: int, sign: int) -> float:
+    slot = s.mass[mass, SLOT]
+    column, row = p.slot[slot, 0], p.slot[slot, 1]
+    side = s.mass[mass, BIAS_SIDE]
+    channel = column + side
+    cost = -_row_cost(p, s, channel, row)
+    s.row[channel, row, BIAS_B - side] += sign
+    cost += _row_cost(p, s, channel, row)
+    end = p.hub_x[column] + (2 * side - 1) * p.sizes[3]
+    if end < p.limits[channel, row, 0] - 1e-6 or end > p.limits[channel, row, 1] + 1e-6:
+        cost += sign * HARD
+    return cost
+
+
+@numba.njit(cache=True)
+def _tally(p: Problem, s: State, nets: Ints, n: int, a: int, b: int, sign: int) -> float:
+    """Add or remove the first ``n`` of ``nets`` and the bias leaves of masses a and b (or -1)."""
+    cost = 0.0
+    for k in range(n):
+        for side in range(2):
+            cost += _half(p, s, nets[k], side, sign)
+    for k in range(2):
+        mass = a if k == 0 else b
+        if mass >= 0 and p.mass[mass, 3]:
+            cost += _bias(p, s, mass, sign)
+    return cost
+
+
+@numba.njit(cache=True)
+def _draw(random: npt.NDArray[np.uint64]) -> float:
+    """xorshift64*: uniform in [0, 1)."""
+    x = random[0]
+    x ^= x >> np.uint64(12)
+    x ^= x << np.uint64(25)
+    x ^= x >> np.uint64(27)
+    random[0] = x
+    return float((x * np.uint64(2685821657736338717)) >> np.uint64(11)) / 9007199254740992.0
+
+
+@numba.njit(cache=True)
+def _gather(p: Problem, mass: int, nets: Ints, n: int) -> int:
+    """Append the nets that move with ``mass``: its own and those that drive it."""
+    for i in range(p.mass[mass, 1] - 1, p.mass[mass + 1, 1]):
+        net = mass if i < p.mass[mass, 1] else p.ins[i]
+        known = False
+        for k in range(n):
+            if nets[k] == net:
+                known = True
+        if not known:
+            nets[n] = net
+            n += 1
+    return n
+
+
+@numba.njit(cache=True)
+def _span(p: Problem, s: State, nets: Ints, n: int) -> float:
+    """Penalty of targets and tabs that are out of reach of their sources."""
+    far = 0
+    for k in range(n):
+        mass = nets[k]
+        column = p.slot[s.mass[mass, SLOT], 0]
+        for i in range(p.mass[mass, 0], p.mass[mass + 1, 0]):
+            far += max(0, abs(p.slot[s.mass[p.coupling[p.outs[i], 1], SLOT], 0] - column) - 1)
+        for tab in range(p.mass[mass, 2], p.mass[mass + 1, 2]):
+            far += max(0, p.tab[tab, 0] - column - 1, column - p.tab[tab, 0])
+    return HARD * far
+
+
+@numba.njit(cache=True)
+def _swap(s: State, a: int, slot: int) -> None:
+    old = s.mass[a, SLOT]
+    b = s.mass_at[slot]
+    s.mass[a, SLOT] = slot
+    s.mass_at[slot] = a
+    s.mass_at[old] = b
+    if b >= 0:
+        s.mass[b, SLOT] = old
+
+
+@numba.njit(cache=True)
+def _propose(p: Problem, s: State, mass: int, random: npt.NDArray[np.uint64]) -> int:
+    """A slot: mostly one near a mass that ``mass`` is coupled to, else any."""
+    outs = p.mass[mass + 1, 0] - p.mass[mass, 0]
+    ins = p.mass[mass + 1, 1] - p.mass[mass, 1]
+    if outs + ins > 0 and _draw(random) < 0.7:
+        pick = int(_draw(random) * (outs + ins))
+        if pick < outs:
+            friend = p.coupling[p.outs[p.mass[mass, 0] + pick], 1]
+        else:
+            friend = p.ins[p.mass[mass, 1] + pick - outs]
+        at = s.mass[friend, SLOT]
+        column = p.slot[at, 0] + int(_draw(random) * 3) - 1
+        row = p.slot[at, 1] + int(_draw(random) * 7) - 3
+        if 0 <= column < p.slot_at.shape[0] and 0 <= row < p.slot_at.shape[1] and p.slot_at[column, row] >= 0:
+            return int(p.slot_at[column, row])
+    return int(_draw(random) * len(p.slot))
+
+
+@numba.njit(cache=True)
+def anneal(
+    p: Problem, s: State, random: npt.NDArray[np.uint64], moves: int, hot: float, cold: float, fixed: bool
+) -> float:
+    """Anneal in place; ``fixed`` keeps the slots and changes sides only. Returns the final cost.
+
+    A slot move is first judged by its reach alone and only then in full (delayed acceptance), which keeps the
+    stationary distribution and spares the tallies most of the hopeless moves.
+    """
+    masses, couplings = len(s.mass), len(p.coupling)
+    nets = np.arange(max(masses, 4 * DEEP)).astype(np.int32)
+    cost = _span(p, s, nets, masses)
+    for mass in range(masses):
+        nets[0] = mass
+        cost += _tally(p, s, nets, 1, mass, -1, 1)
+    known = np.zeros(len(s.count))
+    for channel in range(len(known)):
+        s.dirty[channel] = 0
+        known[channel] = _tracks(p, s, channel)
+        cost += known[channel]
+    new = known.copy()
+    for move in range(moves):
+        heat = hot * (cold / hot) ** (move / moves)
+        kind = 2
+        if fixed or _draw(random) < 0.15:
+            kind = 0 if couplings > 0 and _draw(random) < 0.5 else 1
+        mass, other, n, coupling, slot, reach = int(_draw(random) * masses), -1, 0, 0, 0, 0.0
+        old = s.mass[mass, SLOT]
+        if kind == 0:
+            coupling = int(_draw(random) * couplings)
+            nets[0] = p.coupling[coupling, 0]
+            n, mass = 1, -1
+            if p.slot[s.mass[nets[0], SLOT], 0] != p.slot[s.mass[p.coupling[coupling, 1], SLOT], 0]:
+                continue
+        elif kind == 1:
+            if not p.mass[mass, 3]:
+                continue
+        else:
+            slot = _propose(p, s, mass, random)
+            if slot == old:
+                continue
+            other = s.mass_at[slot]
+            n = _gather(p, mass, nets, 0)
+            if other >= 0:
+                n = _gather(p, other, nets, n)
+            reach = -_span(p, s, nets, n)
+            _swap(s, mass, slot)
+            reach += _span(p, s, nets, n)
+            _swap(s, mass, old)
+            if reach > 0 and _draw(random) >= math.exp(-reach / heat):
+                continue
+        change = 0.0
+        for attempt in range(2):
+            change += _tally(p, s, nets, n, mass, other, -1)
+            if kind == 0:
+                s.side[coupling] = 1 - s.side[coupling]
+            elif kind == 1:
+                s.mass[mass, BIAS_SIDE] = 1 - s.mass[mass, BIAS_SIDE]
+            else:
+                _swap(s, mass, slot if attempt == 0 else old)
+            change += _tally(p, s, nets, n, mass, other, 1)
+            if attempt == 0:
+                for channel in range(len(known)):
+                    if s.dirty[channel]:
+                        new[channel] = _tracks(p, s, channel)
+                        change += new[channel] - known[channel]
+                taken = change <= 0 or _draw(random) < math.exp(-change / heat)
+            for channel in range(len(known)):
+                if s.dirty[channel] and (attempt == 1 or taken):
+                    s.dirty[channel] = 0
+                    if taken:
+                        known[channel] = new[channel]
+            if taken:
+                cost += change + reach
+                break
+    return cost

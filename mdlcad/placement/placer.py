@@ -1,0 +1,78 @@
+"""Place a network on a lattice: who sits in which slot."""
+
+from __future__ import annotations
+
+import random
+from dataclasses import dataclass
+
+import numpy as np
+
+from mdlcad.mechanics.rules import LayoutRules
+from mdlcad.network.model import Network
+from mdlcad.placement.anneal import anneal
+from mdlcad.placement.lattice import Lattice
+from mdlcad.placement.placement import PlacedMass, Placement
+from mdlcad.placement.problem import build, realisable
+from mdlcad.placement.state import start
+
+MOVES_PER_MASS = 4000
+HOT, COLD = 8.0, 0.15
+
+
+@dataclass(frozen=True, slots=True)
+class PlaceResult:
+    """A placement, the cost that annealing left (below ``HARD``: no hard rule is known to be broken)."""
+
+    placement: Placement
+    cost: float
+
+
+def place(network: Network, lattice: Lattice, rules: LayoutRules, seed: int) -> PlaceResult:
+    """Anneal ``network`` onto ``lattice``, which must have a slot for every mass. Same arguments, same result."""
+    problem = build(network, lattice, rules)
+    slots = list(range(len(lattice.slots)))
+    random.Random(seed).shuffle(slots)
+    state, source = start(problem, np.array(slots[: len(network.masses)], np.int32), seed)
+    cost = anneal(problem, state, source, MOVES_PER_MASS * len(network.masses), HOT, COLD, False)
+    masses = []
+    for index, mass in enumerate(network.masses):
+        column, row = lattice.slots[int(state.mass[index, 0])]
+        masses.append(PlacedMass(mass.name, column, row, lattice.column_x[column], lattice.row_y[row]))
+    placement = Placement(
+        boundary=lattice.boundary,
+        mm_per_grid=lattice.mm_per_grid,
+        column_x=lattice.column_x,
+        row_y=lattice.row_y,
+        slots=lattice.slots,
+        masses=tuple(masses),
+        ports=lattice.ports,
+        seed=seed,
+    )
+    return PlaceResult(placement, float(cost))
+
+
+@dataclass(frozen=True, slots=True)
+class Sides:
+    """Side (0 left, 1 right channel of the source's column) of every realisable coupling, by name, and the side of
+    every bias leaf (0 left, 1 right of its hub), by mass."""
+
+    couplings: dict[str, int]
+    biases: dict[str, int]
+    cost: float
+
+
+def choose_sides(network: Network, placement: Placement, lattice: Lattice, rules: LayoutRules, seed: int) -> Sides:
+    """Which channel serves every coupling and bias leaf, for masses that stay where they are."""
+    problem = build(network, lattice, rules)
+    index = {slot: i for i, slot in enumerate(lattice.slots)}
+    where = {placed.mass: index[placed.column, placed.row] for placed in placement.masses}
+    columns = {placed.mass: placed.column for placed in placement.masses}
+    state, source = start(problem, np.array([where[mass.name] for mass in network.masses], np.int32), seed)
+    cost = anneal(problem, state, source, 2000 * len(network.masses), HOT, COLD, True)
+    couplings = {}
+    for i, j in enumerate(realisable(network, rules)):
+        coupling = network.couplings[j]
+        across = columns[coupling.target] - columns[coupling.source]
+        couplings[coupling.name] = int(state.side[i]) if across == 0 else int(across > 0)
+    biases = {mass.name: int(state.mass[i, 1]) for i, mass in enumerate(network.masses) if mass.name in rules.biases}
+    return Sides(couplings, biases, float(cost))

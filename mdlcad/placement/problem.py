@@ -1,0 +1,146 @@
+"""The placement problem as arrays for the annealing kernel: masses, couplings, slots, channels, tabs."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from mdlcad.mechanics.rules import LayoutRules
+from mdlcad.network.model import CouplingKind, Network
+from mdlcad.placement.grid import TabTerminal, free_intervals, holding
+from mdlcad.placement.lattice import Lattice
+
+Ints = npt.NDArray[np.int32]
+Floats = npt.NDArray[np.float64]
+
+LEFT_WALL, RIGHT_WALL, UP_OR_DOWN = 0, 1, 2
+"""How a tab meets its rows: from the left wall, from the right wall, or in y."""
+
+
+class Problem(NamedTuple):
+    """Few wide tables (the kernel's compile time grows with their number).
+
+    Attributes:
+        coupling: (J, 3) source mass, target mass, whether it has a post.
+        mass: (M + 1, 4) first entry in ``outs``, in ``ins``, in ``tab``; whether it has a bias leaf.
+        outs: couplings by source. ins: driving masses by target.
+        tab: (T, 5) channel, lowest and highest row it meets, row it lies in or -1, kind; ordered by mass.
+        slot: (S, 2) column, row. slot_at: (columns, rows) slot or -1.
+        reach: (J,) distance of a coupling's trunk from its target hub, mm.
+        hub_x: (columns,) mm.
+        limits: (C, R, 4) lowest and highest x of a trunk in a row; what a tab in y leaves of the row: highest x of
+            trunks that hang on the left hub, lowest of those on the right.
+        is_open: (C, R) whether the channel is open from hub to hub in that row.
+        sizes: distance of a source's trunk from its hub, track pitch (mm), number of rung plates, reach of bias leaves.
+    """
+
+    coupling: Ints
+    mass: Ints
+    outs: Ints
+    ins: Ints
+    tab: Ints
+    slot: Ints
+    slot_at: Ints
+    reach: Floats
+    hub_x: Floats
+    limits: Floats
+    is_open: Ints
+    sizes: Floats
+
+
+def realisable(network: Network, rules: LayoutRules) -> tuple[int, ...]:
+    """Indices of the couplings that mechanics gives a linkage for."""
+    return tuple(
+        index
+        for index, coupling in enumerate(network.couplings)
+        if coupling.kind is CouplingKind.LINEAR and coupling.name in rules.couplers
+    )
+
+
+def build(network: Network, lattice: Lattice, rules: LayoutRules) -> Problem:
+    """The arrays for ``network`` on ``lattice``."""
+    masses = {mass.name: index for index, mass in enumerate(network.masses)}
+    couplings = [network.couplings[index] for index in realisable(network, rules)]
+    source = np.array([masses[c.source] for c in couplings], np.int32)
+    target = np.array([masses[c.target] for c in couplings], np.int32)
+    posted = np.array([c.name in rules.post_offset for c in couplings], np.int32)
+    out_start, outs = _rows(source, len(masses))
+    in_start, into = _rows(target, len(masses))
+    tabs = sorted(lattice.tabs, key=lambda tab: masses[tab.mass])
+    tab_start = np.searchsorted(np.array([masses[t.mass] for t in tabs], np.int32), np.arange(len(masses) + 1))
+    biased = np.array([mass.name in rules.biases for mass in network.masses] + [False], np.int32)
+    slot_at = np.full((len(lattice.column_x), len(lattice.row_y)), -1, np.int32)
+    for index, (column, row) in enumerate(lattice.slots):
+        slot_at[column, row] = index
+    half = rules.bar_width / 2
+    limits, is_open = _channels(lattice, rules)
+    return Problem(
+        coupling=np.stack([source, target, posted], axis=1),
+        mass=np.stack([out_start, in_start, tab_start.astype(np.int32), biased], axis=1),
+        outs=outs,
+        ins=source[into],
+        tab=np.array([_tab(tab, lattice) for tab in tabs], np.int32).reshape(-1, 5),
+        slot=np.array(lattice.slots, np.int32),
+        slot_at=slot_at,
+        reach=np.array([max(rules.couplers[c.name], rules.hub_half) + half for c in couplings]),
+        hub_x=np.array(lattice.column_x),
+        limits=limits,
+        is_open=is_open,
+        sizes=np.array(
+            [
+                rules.hub_half + half,
+                rules.track_pitch,
+                len(rules.link_plates),
+                max(rules.biases.values(), default=0.0) + rules.post_radius - half,
+            ]
+        ),
+    )
+
+
+def _rows(key: Ints, count: int) -> tuple[Ints, Ints]:
+    """Compressed rows: members of each key in index order."""
+    order = np.argsort(key, kind="stable").astype(np.int32)
+    start = np.searchsorted(key[order], np.arange(count + 1)).astype(np.int32)
+    return start, order
+
+
+def _tab(tab: TabTerminal, lattice: Lattice) -> tuple[int, int, int, int, int]:
+    if tab.vertical and tab.row is not None:
+        return tab.channel, tab.row, tab.row, tab.row, UP_OR_DOWN
+    nearest = min(range(len(lattice.row_y)), key=lambda r: abs(lattice.row_y[r] - tab.y))
+    rows = tab.rows or (nearest,)
+    kind = RIGHT_WALL if tab.outside > 0 else LEFT_WALL
+    return tab.channel, min(rows), max(rows), -1 if tab.row is None else tab.row, kind
+
+
+def _channels(lattice: Lattice, rules: LayoutRules) -> tuple[Floats, Ints]:
+    """``limits`` and ``is_open`` of a Problem."""
+    columns, rows = len(lattice.column_x), len(lattice.row_y)
+    half = rules.bar_width / 2
+    keep = rules.hub_pin_offset + rules.pin / 2 + rules.gap + half
+    limits = np.zeros((columns + 1, rows, 4))
+    is_open = np.zeros((columns + 1, rows), np.int32)
+    for row, y in enumerate(lattice.row_y):
+        spans = free_intervals(lattice.inner, y - rules.row_pitch / 2, y + rules.row_pitch / 2)
+        for channel in range(columns + 1):
+            left = lattice.column_x[channel - 1] if channel > 0 else None
+            right = lattice.column_x[channel] if channel < columns else None
+            at_left = holding(spans, left) if left is not None else None
+            at_right = holding(spans, right) if right is not None else None
+            low, high = at_left or at_right or (1.0, 0.0)
+            is_open[channel, row] = left is None or right is None or at_left == at_right
+            low, high = low + half, high - half
+            if left is not None:
+                low = max(low, left + keep)
+            if right is not None:
+                high = min(high, right - keep)
+            limits[channel, row] = low, high, high, low
+    for tab in lattice.tabs:
+        if tab.vertical:
+            for row in tab.rows:
+                mine = limits[tab.channel, row]
+                mine[2] = min(mine[2], tab.x - rules.track_pitch)
+                mine[3] = max(mine[3], tab.x + rules.track_pitch)
+    return limits, is_open

@@ -1,0 +1,76 @@
+"""The annealer's state: where everything is, and the tallies that its cost is made of."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from mdlcad.placement.problem import Floats, Ints, Problem
+
+DEEP = 16
+"""Most items that can meet one side of a row of a channel."""
+
+
+class State(NamedTuple):
+    """A *net-channel* 2 m + side is what the net of mass m has in the channel left (0) or right (1) of m.
+
+    Attributes:
+        mass: (M, 2) slot, side of the bias leaf. mass_at: mass or -1 by slot. side: (J,) channel side of couplings.
+        row: (C, R, 11) tallies of a row of a channel.
+        items: (C, R, 2, DEEP) what meets a row on either side: 2 * net-channel + whether it has a post.
+        before: [i, j] counts the rows in which net-channel i must run left of net-channel j.
+        trunks, count: the net-channels with a trunk, by channel.
+        window, rows: by net-channel, lowest and highest x (mm) and row of its trunk.
+        dirty: channels whose trunks have changed. at, due, waits: room for packing tracks.
+    """
+
+    mass: Ints
+    mass_at: Ints
+    side: Ints
+    row: Ints
+    items: Ints
+    before: npt.NDArray[np.int16]
+    trunks: Ints
+    count: Ints
+    window: Floats
+    rows: Ints
+    dirty: Ints
+    at: Floats
+    due: Floats
+    waits: Ints
+
+
+def start(problem: Problem, slot_of: Ints, seed: int) -> tuple[State, npt.NDArray[np.uint64]]:
+    """A state with the given slots and a seeded random source.
+
+    Raises:
+        ValueError: a mass has more inputs than a row of a channel can hold.
+    """
+    masses, channels, rows = len(slot_of), problem.limits.shape[0], problem.limits.shape[1]
+    if masses and int(np.max(np.diff(problem.mass[:, 1]))) + 6 > DEEP:
+        raise ValueError("a mass has too many inputs for the placer")
+    mass_at = np.full(len(problem.slot), -1, np.int32)
+    mass_at[slot_of] = np.arange(masses, dtype=np.int32)
+    state = State(
+        mass=np.stack([slot_of, np.zeros_like(slot_of)], axis=1).astype(np.int32),
+        mass_at=mass_at,
+        side=np.zeros(len(problem.coupling), np.int32),
+        row=np.zeros((channels, rows, 11), np.int32),
+        items=np.zeros((channels, rows, 2, DEEP), np.int32),
+        before=np.zeros((2 * masses, 2 * masses), np.int16),
+        trunks=np.zeros((channels, masses + 1), np.int32),
+        count=np.zeros(channels, np.int32),
+        window=np.zeros((2 * masses, 2)),
+        rows=np.zeros((2 * masses, 2), np.int32),
+        dirty=np.zeros(channels, np.int32),
+        at=np.zeros(masses + 1),
+        due=np.zeros(masses + 1),
+        waits=np.zeros(masses + 1, np.int32),
+    )
+    # splitmix64 spreads neighbouring seeds apart
+    z: Any = (seed * 0x9E3779B97F4A7C15 + 0x9E3779B97F4A7C15) & 0xFFFFFFFFFFFFFFFF
+    z = ((z ^ (z >> 30)) * 0xBF58476D1CE4E5B9) & 0xFFFFFFFFFFFFFFFF
+    z = ((z ^ (z >> 27)) * 0x94D049BB133111EB) & 0xFFFFFFFFFFFFFFFF
+    return state, np.array([(z ^ (z >> 31)) | 1], np.uint64)

@@ -1,0 +1,322 @@
+"""What a channel has to hold: trunks and the items that hang on them, before tracks and plates are chosen.
+
+x positions are counted in multiples of ``RESOLUTION`` (see ``placement.grid``); an edge is either fixed or a fixed
+distance from a trunk's centre. Heights (y) are known from the placement.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+from mdlcad.mechanics.rules import LayoutRules
+from mdlcad.network.model import Network
+from mdlcad.placement.grid import RESOLUTION, TabTerminal, free_intervals, holding
+from mdlcad.placement.lattice import Lattice
+from mdlcad.placement.placement import PlacedMass, Placement
+from mdlcad.placement.placer import Sides
+
+
+class Role(StrEnum):
+    SOURCE = "source"
+    COUPLER = "coupler"
+    STRAIGHT = "straight"
+    BIAS = "bias"
+    TAB = "tab"
+
+
+def units(length: float) -> int:
+    """A length in counts, rounded up (clearances are never rounded away)."""
+    return math.ceil(length / RESOLUTION - 1e-6)
+
+
+@dataclass(frozen=True, slots=True)
+class Edge:
+    """An x position in counts: ``at``, or the centre of trunk ``trunk`` plus ``at``."""
+
+    at: int
+    trunk: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class TrunkPiece:
+    """A trunk to be given a track: ``domain`` are the intervals (counts) its centre may take; y in mm."""
+
+    net: str
+    domain: tuple[tuple[int, int], ...]
+    y_low: float
+    y_high: float
+
+
+@dataclass(frozen=True, slots=True)
+class Item:
+    """One thing on a rung plate.
+
+    Attributes:
+        net: the mass whose carrier (or bias leaf) it is.
+        ref: coupling name, port bit or mass name.
+        hubs: the (mass, side) hub sides it is fixed to; no two items share one on a plate.
+        y_low, y_high: its height at rest, mm.
+        left, right: its reach in x; ``span`` replaces both for a tab in y, whose bend may lie on either side.
+        trunk: index of the trunk whose pin it needs at that trunk's centre, or None.
+        post: where its fixed post stands (counts), or None.
+        rises: (x_low, x_high, y_low, y_high) of a second rectangle on the same plate: a tab's vertical part.
+    """
+
+    role: Role
+    net: str
+    ref: str
+    hubs: tuple[tuple[str, int], ...]
+    y_low: float
+    y_high: float
+    left: Edge
+    right: Edge
+    trunk: int | None = None
+    post: int | None = None
+    bend: int | None = None
+    rises: tuple[int, int, float, float] | None = None
+
+
+@dataclass(slots=True)
+class Channel:
+    """All pieces of one channel. ``trouble`` names what can have no legal track at all."""
+
+    index: int
+    trunks: list[TrunkPiece] = field(default_factory=list)
+    items: list[Item] = field(default_factory=list)
+    trouble: list[str] = field(default_factory=list)
+
+
+@dataclass(frozen=True, slots=True)
+class _Connection:
+    """One end that a net must reach in a channel: a coupling's target or a tab."""
+
+    coupling: str | None
+    target: PlacedMass | None
+    tab: TabTerminal | None
+
+
+def channels(
+    network: Network, placement: Placement, lattice: Lattice, sides: Sides, rules: LayoutRules
+) -> tuple[Channel, ...]:
+    """The pieces of every channel, left to right."""
+    placed = {item.mass: item for item in placement.masses}
+    result = tuple(Channel(index) for index in range(len(placement.column_x) + 1))
+    wanted: dict[tuple[str, int], list[_Connection]] = {}
+    for coupling in network.couplings:
+        if coupling.name in sides.couplings:
+            key = (coupling.source, sides.couplings[coupling.name])
+            wanted.setdefault(key, []).append(_Connection(coupling.name, placed[coupling.target], None))
+    for tab in lattice.tabs:
+        side = tab.channel - placed[tab.mass].column
+        if side not in (0, 1):
+            result[tab.channel].trouble.append(f"port {tab.bit}: mass {tab.mass} is not beside the channel of its tab")
+            continue
+        wanted.setdefault((tab.mass, side), []).append(_Connection(None, None, tab))
+    for mass in network.masses:
+        for side in (0, 1):
+            ends = wanted.get((mass.name, side), [])
+            if ends:
+                source = placed[mass.name]
+                _net(result[source.column + side], source, side, ends, lattice, rules)
+        if mass.name in sides.biases:
+            _bias(result[placed[mass.name].column + sides.biases[mass.name]], placed[mass.name], sides, lattice, rules)
+    return result
+
+
+def _bias(channel: Channel, hub: PlacedMass, sides: Sides, lattice: Lattice, rules: LayoutRules) -> None:
+    side = sides.biases[hub.mass]
+    reach, half = rules.biases[hub.mass], rules.hub_height / 2
+    sign = 1 if side == 1 else -1
+    post = hub.x + sign * reach
+    ends = sorted((hub.x, post + sign * rules.post_radius))
+    strip = free_intervals(lattice.inner, hub.y - half - rules.throw, hub.y + half + rules.throw)
+    span = holding(strip, hub.x)
+    if span is None or ends[0] < span[0] - 1e-6 or ends[1] > span[1] + 1e-6:
+        channel.trouble.append(f"bias leaf of {hub.mass} does not fit inside the rim")
+    channel.items.append(
+        Item(
+            Role.BIAS,
+            hub.mass,
+            hub.mass,
+            ((hub.mass, side),),
+            hub.y - half,
+            hub.y + half,
+            Edge(math.floor(ends[0] / RESOLUTION + 1e-6)),
+            Edge(units(ends[1])),
+            post=round(post / RESOLUTION),
+        )
+    )
+
+
+def _net(
+    channel: Channel, source: PlacedMass, side: int, ends: list[_Connection], lattice: Lattice, rules: LayoutRules
+) -> None:
+    only = ends[0]
+    if len(ends) == 1:
+        if only.target is not None and only.target.row == source.row and only.target.column != source.column:
+            return _straight(channel, source, side, only.coupling or "", only.target, lattice, rules)
+        if only.tab is not None and not only.tab.vertical and only.tab.row == source.row:
+            return _straight_tab(channel, source, side, only.tab, rules)
+    heights = [source.y, *(end.target.y if end.target else end.tab.y if end.tab else 0.0 for end in ends)]
+    domain = _domain(channel.index, source, side, ends, min(heights), max(heights), lattice, rules)
+    if not domain:
+        channel.trouble.append(f"net {source.mass}: no track reaches all its ends")
+    trunk = len(channel.trunks)
+    channel.trunks.append(TrunkPiece(source.mass, domain, min(heights), max(heights)))
+    channel.items.append(_hung(Role.SOURCE, source, source.mass, source, side, trunk, None, rules))
+    for end in ends:
+        if end.target is not None and end.coupling is not None:
+            hub_side = 1 if end.target.column < channel.index else 0
+            post = None
+            if end.coupling in rules.post_offset:
+                sign = 1 if hub_side == 1 else -1
+                post = round((end.target.x + sign * rules.post_offset[end.coupling]) / RESOLUTION)
+            item = _hung(Role.COUPLER, source, end.coupling, end.target, hub_side, trunk, post, rules)
+            channel.items.append(item)
+        elif end.tab is not None:
+            channel.items.append(_tab(source, end.tab, trunk, rules))
+    return None
+
+
+def _hung(
+    role: Role,
+    source: PlacedMass,
+    ref: str,
+    hub: PlacedMass,
+    side: int,
+    trunk: int,
+    post: int | None,
+    rules: LayoutRules,
+) -> Item:
+    """An item between a hub and a trunk; ``side`` is the hub's side (1: the trunk is at higher x)."""
+    half = rules.hub_height / 2
+    at, bar = round(hub.x / RESOLUTION), units(rules.bar_width / 2)
+    left, right = (Edge(at), Edge(bar, trunk)) if side == 1 else (Edge(-bar, trunk), Edge(at))
+    return Item(
+        role, source.mass, ref, ((hub.mass, side),), hub.y - half, hub.y + half, left, right, trunk=trunk, post=post
+    )
+
+
+def _straight(
+    channel: Channel,
+    source: PlacedMass,
+    side: int,
+    coupling: str,
+    target: PlacedMass,
+    lattice: Lattice,
+    rules: LayoutRules,
+) -> None:
+    half = rules.hub_height / 2
+    strip = free_intervals(lattice.inner, source.y - half - rules.throw, source.y + half + rules.throw)
+    if holding(strip, source.x) != holding(strip, target.x):
+        channel.trouble.append(f"coupling {coupling}: a wall stands between its masses")
+    post = None
+    if coupling in rules.post_offset:
+        sign = -1 if side == 1 else 1
+        post = round((target.x + sign * rules.post_offset[coupling]) / RESOLUTION)
+    low, high = sorted((source.x, target.x))
+    channel.items.append(
+        Item(
+            Role.STRAIGHT,
+            source.mass,
+            coupling,
+            ((source.mass, side), (target.mass, 1 - side)),
+            source.y - half,
+            source.y + half,
+            Edge(round(low / RESOLUTION)),
+            Edge(round(high / RESOLUTION)),
+            post=post,
+        )
+    )
+
+
+def _straight_tab(channel: Channel, source: PlacedMass, side: int, tab: TabTerminal, rules: LayoutRules) -> None:
+    half = rules.hub_height / 2
+    low, high = sorted((source.x, tab.path[1][0]))
+    channel.items.append(
+        Item(
+            Role.STRAIGHT,
+            source.mass,
+            tab.bit,
+            ((source.mass, side),),
+            source.y - half,
+            source.y + half,
+            Edge(math.floor(low / RESOLUTION + 1e-6)),
+            Edge(units(high)),
+        )
+    )
+
+
+def _tab(source: PlacedMass, tab: TabTerminal, trunk: int, rules: LayoutRules) -> Item:
+    half, bar = rules.bar_width / 2, units(rules.bar_width / 2)
+    low, high = tab.y - half, tab.y + half
+    if tab.vertical:
+        bend = round(tab.x / RESOLUTION)
+        tip = tab.path[-1][1]
+        rises = (bend - bar, bend + bar, min(low, tip), max(high, tip))
+        return Item(
+            Role.TAB,
+            source.mass,
+            tab.bit,
+            (),
+            low,
+            high,
+            Edge(-bar, trunk),
+            Edge(bar, trunk),
+            trunk=trunk,
+            bend=bend,
+            rises=rises,
+        )
+    wall = tab.path[1][0]
+    if tab.outside > 0:
+        left, right = Edge(-bar, trunk), Edge(units(wall))
+    else:
+        left, right = Edge(math.floor(wall / RESOLUTION)), Edge(bar, trunk)
+    return Item(Role.TAB, source.mass, tab.bit, (), low, high, left, right, trunk=trunk)
+
+
+def _domain(
+    index: int,
+    source: PlacedMass,
+    side: int,
+    ends: list[_Connection],
+    y_low: float,
+    y_high: float,
+    lattice: Lattice,
+    rules: LayoutRules,
+) -> tuple[tuple[int, int], ...]:
+    """Where the net's trunk may stand in channel ``index``: inside the walls, off the hubs, far enough for couplers."""
+    bar = rules.bar_width / 2
+    keep = rules.hub_pin_offset + rules.pin / 2 + rules.gap + bar
+    low, high = lattice.inner.bounds[0], lattice.inner.bounds[2]
+    if index > 0:
+        low = max(low, lattice.column_x[index - 1] + keep)
+    if index < len(lattice.column_x):
+        high = min(high, lattice.column_x[index] - keep)
+    off_hub = rules.hub_half + bar
+    limits = [(source, side, off_hub)]
+    for end in ends:
+        if end.target is not None and end.coupling is not None:
+            hub_side = 1 if end.target.column < index else 0
+            limits.append((end.target, hub_side, max(off_hub, rules.couplers[end.coupling] + bar)))
+    strips = [free_intervals(lattice.inner, y_low - bar - rules.throw, y_high + bar + rules.throw)]
+    for hub, hub_side, reach in limits:
+        if hub_side == 1:
+            low = max(low, hub.x + reach)
+        else:
+            high = min(high, hub.x - reach)
+        half = rules.hub_height / 2 + rules.throw
+        span = holding(free_intervals(lattice.inner, hub.y - half, hub.y + half), hub.x)
+        strips.append((span,) if span else ())
+    pieces = [(low, high)]
+    for strip in strips:
+        pieces = [
+            (max(a, c + bar), min(b, d - bar))
+            for a, b in pieces
+            for c, d in strip
+            if min(b, d - bar) >= max(a, c + bar)
+        ]
+    counts = [(units(a), math.floor(b / RESOLUTION + 1e-6)) for a, b in pieces]
+    return tuple((a, b) for a, b in counts if a <= b)
