@@ -239,7 +239,8 @@ def _faults(process: Process) -> list[tuple[str, str]]:
         for section in dataclasses.fields(process)
         if dataclasses.is_dataclass(getattr(process, section.name))
         for entry in dataclasses.fields(getattr(process, section.name))
-        if isinstance(value := getattr(getattr(process, section.name), entry.name), float | int) and value <= 0.0
+        if isinstance(value := getattr(getattr(process, section.name), entry.name), float | int)
+        and (value < 0.0 or (value == 0.0 and entry.name != "kerf"))  # a printer has no kerf
     ]
     for name, material in process.materials.items():
         for key in ("modulus", "strain_limit", "strain_peak", "density"):
