@@ -1,0 +1,154 @@
+"""The network: masses by clock wave and bias, couplings by sign, in the device's boundary."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import FancyArrowPatch
+
+from mdlcad.network.model import CouplingKind, MassKind, Network
+from mdlcad.scenario.figures.page import FAINT, INK, NEGATIVE, PAPER, PHASES, POSITIVE, bare, new_figure, png
+from mdlcad.scenario.seats import Seats
+
+_INCHES = 8.0
+
+
+def picture(network: Network, seats: Seats) -> bytes:
+    """PNG of the network."""
+    figure, axes = framed(seats, _INCHES)
+    outline(axes, seats)
+    couplings(axes, network, seats)
+    # smaller masses in larger networks, down to where they are dots
+    side = float(np.clip(150.0 / np.sqrt(len(network.masses)), 4.0, 19.0))
+    ports = {port.mass for port in (*network.sensors, *network.actuators)}
+    registers = {register.mass for register in network.registers}
+    for mass in network.masses:
+        x, y = seats.masses[mass.name]
+        marker = "s" if mass.name in ports else "D" if mass.kind is MassKind.TICK else "o"
+        edge = 2.4 if mass.name in registers else 0.9
+        colour = PHASES[mass.phase % len(PHASES)]
+        axes.plot(x, y, marker, ms=side * (0.8 if marker == "D" else 1.0), mfc=colour, mec=INK, mew=edge, zorder=3)
+        if mass.bias and side > 7.0:
+            # the bias force is -q
+            axes.text(
+                x,
+                y,
+                "−" if mass.bias > 0 else "+",
+                ha="center",
+                va="center_baseline",
+                fontsize=0.75 * side,
+                fontweight="bold",
+                color="white",
+                zorder=4,
+            )
+    _port_names(axes, seats)
+    _legend(axes, network)
+    negative = sum(coupling.strength < 0 for coupling in network.couplings)
+    where = "in their slots" if seats.placed else "not placed yet: spread for the eye"
+    axes.set_title(
+        f"{network.design}: {len(network.masses)} masses ({where}), {len(network.couplings)} couplings, "
+        f"{negative} negative",
+        fontsize=10.5,
+        color=INK,
+    )
+    return png(figure)
+
+
+def framed(seats: Seats, inches: float) -> tuple[Figure, Axes]:
+    """A figure whose larger side is ``inches``, with axes to scale around the boundary."""
+    points = np.array([*seats.boundary, *seats.masses.values()])
+    low, high = points.min(axis=0), points.max(axis=0)
+    margin = 0.06 * float((high - low).max())
+    size = (high - low + 2 * margin) * inches / float((high - low + 2 * margin).max())
+    figure = new_figure(float(size[0]), float(size[1]))
+    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+    axes.set_xlim(low[0] - margin, high[0] + margin)
+    axes.set_ylim(low[1] - margin, high[1] + margin)
+    axes.set_aspect("equal")
+    bare(axes)
+    return figure, axes
+
+
+def outline(axes: Axes, seats: Seats) -> None:
+    """The boundary, behind everything."""
+    axes.fill(*zip(*seats.boundary, strict=True), fc=PAPER, ec=FAINT, lw=1.5, zorder=0)
+
+
+def couplings(axes: Axes, network: Network, seats: Seats, *, arrows: bool = True) -> None:
+    """Couplings as arcs from source to target, negative ones red, latches dashed."""
+    strongest = max((abs(coupling.strength) for coupling in network.couplings), default=1.0)
+    thin = 1.0 if len(network.couplings) < 300 else 0.5
+    for coupling in network.couplings:
+        red = coupling.strength < 0
+        axes.add_patch(
+            FancyArrowPatch(
+                seats.masses[coupling.source],
+                seats.masses[coupling.target],
+                # bent, so that couplings along one column do not cover each other
+                connectionstyle="arc3,rad=0.14",
+                arrowstyle="-|>" if arrows else "-",
+                mutation_scale=7,
+                shrinkA=5,
+                shrinkB=7 if arrows else 5,
+                color=NEGATIVE if red else POSITIVE,
+                lw=thin * (0.5 + 1.1 * abs(coupling.strength) / strongest),
+                ls="--" if coupling.kind is CouplingKind.LATCH else "-",
+                alpha=0.95 if red else 0.8,
+                zorder=2 if red else 1,
+            )
+        )
+
+
+def _port_names(axes: Axes, seats: Seats) -> None:
+    """Every bit's name beside its place, outside the boundary."""
+    corners = np.array(seats.boundary)
+    reach = 0.02 * float(np.ptp(corners, axis=0).max())
+    following = np.roll(corners, -1, axis=0)
+    for bit, spot in seats.ports.items():
+        here = np.array(spot)
+        # the normal of the nearest side
+        along = following - corners
+        share = np.clip(((here - corners) * along).sum(axis=1) / (along**2).sum(axis=1), 0.0, 1.0)
+        nearest = int(np.argmin(((corners + share[:, None] * along - here) ** 2).sum(axis=1)))
+        normal = np.array([-along[nearest, 1], along[nearest, 0]]) / np.hypot(*along[nearest])
+        x, y = here + reach * normal
+        sideways = abs(normal[0]) > 0.7
+        axes.text(
+            x,
+            y,
+            bit,
+            fontsize=8,
+            color=INK,
+            ha=("left" if normal[0] > 0 else "right") if sideways else "center",
+            va="center" if sideways else ("bottom" if normal[1] > 0 else "top"),
+        )
+        axes.plot(*spot, marker="o", ms=3.5, color=INK, zorder=3)
+
+
+def _legend(axes: Axes, network: Network) -> None:
+    def dot(colour: str, marker: str, edge: float, label: str) -> Line2D:
+        return Line2D([], [], ls="", marker=marker, mfc=colour, mec=INK, mew=edge, ms=8, label=label)
+
+    handles = [
+        dot(PHASES[phase % len(PHASES)], "o", 0.9, f"clock wave {phase}") for phase in range(network.dynamics.phases)
+    ]
+    handles += [
+        dot("white", "s", 0.9, "sensor or actuator"),
+        dot("white", "o", 2.4, "register"),
+        dot("white", "D", 0.9, "tick ring"),
+        Line2D([], [], color=POSITIVE, lw=1.6, label="coupling"),
+        Line2D([], [], color=NEGATIVE, lw=1.6, label="negative coupling"),
+        Line2D([], [], ls="", marker="$\\pm$", color=INK, ms=8, label="sign of the bias force"),
+    ]
+    axes.legend(
+        handles=handles,
+        loc="upper center",
+        bbox_to_anchor=(0.5, 0.0),
+        ncols=5,
+        fontsize=8,
+        frameon=False,
+        handletextpad=0.4,
+        columnspacing=1.2,
+    )
