@@ -11,8 +11,8 @@ from mdlcad.placement.grid import inside, terminals
 from mdlcad.placement.lattice import Lattice
 from mdlcad.placement.placement import Placement
 from mdlcad.placement.placer import choose_sides
-from mdlcad.routing.channel import ChannelRoute, solve
 from mdlcad.routing.assemble import assemble
+from mdlcad.routing.channel import ChannelRoute, solve
 from mdlcad.routing.layout import Layout
 from mdlcad.routing.pieces import Channel, channels
 

@@ -12,7 +12,9 @@ SQUARE = ((0, 0), (0, 39), (39, 39), (39, 0))
 HOUSE = ((0, 35), (20, 49), (39, 35), (39, 0), (0, 0))
 
 
-def synthetic(masses: int, couplings: int, ring: int, fan_out: int, negative: int, sensors: int, actuators: int, seed: int):
+def synthetic(
+    masses: int, couplings: int, ring: int, fan_out: int, negative: int, sensors: int, actuators: int, seed: int
+):
     """A layered random network: a tick ring that drives registers, gates of at most three inputs near in depth."""
     rng = random.Random(seed)
     names = [f"tick[{i}]" for i in range(ring)] + [f"g{i}" for i in range(masses - ring - sensors)]
