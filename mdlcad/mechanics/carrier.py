@@ -11,12 +11,13 @@ from itertools import pairwise
 
 import numpy as np
 
+from mdlcad.mechanics.findings import Finding
 from mdlcad.mechanics.flexure import RIGID, Sheet
 from mdlcad.mechanics.frame import TURN, Beam, Frame, Spring, X, Y, dof
 from mdlcad.mechanics.leaves import LeafKind, trim
 from mdlcad.mechanics.process import Plate, PlateRole, Process
 from mdlcad.mechanics.rules import LayoutRules
-from mdlcad.mechanics.sizing import Finding, Sizing
+from mdlcad.mechanics.sizing import Sizing
 from mdlcad.network.model import Network
 from mdlcad.placement.placement import Placement
 from mdlcad.routing.layout import EndKind, Layout, Rung, Trunk

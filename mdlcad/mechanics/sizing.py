@@ -7,74 +7,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from mdlcad.errors import UsageError
+from mdlcad.mechanics.findings import Finding, findings_of
 from mdlcad.mechanics.leaves import LeafKind, LeafSize, eye_radius, size_leaf, trim
 from mdlcad.mechanics.process import PlateRole, Process
 from mdlcad.mechanics.rules import LayoutRules
 from mdlcad.mechanics.series import SeriesSpring, series_spring
+from mdlcad.mechanics.sizes import BiasSize, CouplerSize, UnitSize
 from mdlcad.mechanics.unit import UnitLaw, beam_strain, unit_law
-from mdlcad.network.model import Coupling, CouplingKind, Mass, Network
-
-
-@dataclass(frozen=True, slots=True)
-class Finding:
-    """Something that does not hold: ``rule`` (short name), ``subject`` (a part), the value and the limit it misses."""
-
-    rule: str
-    subject: str
-    value: float
-    limit: float
-    message: str
-
-
-@dataclass(frozen=True, slots=True)
-class CouplerSize:
-    """The flexure of one coupling and its reduced-model numbers (in units of S0).
-
-    Attributes:
-        strength: signed c that the flexure has; self_stiffness: s it adds to both masses.
-        quartic: in units of a mass's own quartic.
-    """
-
-    coupling: str
-    leaf: LeafSize
-    strength: float
-    self_stiffness: float
-    quartic: float
-
-
-@dataclass(frozen=True, slots=True)
-class BiasSize:
-    """The bias leaf of one mass.
-
-    Attributes:
-        offset: place of the post in y from the row's centre, mm: -q F0 over the leaf's stiffness.
-        bias: q that it gives; self_stiffness: what it adds to its mass, in units of S0.
-    """
-
-    mass: str
-    leaf: LeafSize
-    offset: float
-    bias: float
-    self_stiffness: float
-
-
-@dataclass(frozen=True, slots=True)
-class UnitSize:
-    """One mass's unit.
-
-    Attributes:
-        compensation_network: what the cell library computed; compensation: minus the self terms of the parts built.
-        preload: mm by which the clock block is pushed towards the shuttle when the clock stands in its middle (p = 1).
-        amplitude: largest |y| seen, mm; strain: of its beams there.
-    """
-
-    mass: str
-    phase: int
-    compensation_network: float
-    compensation: float
-    preload: float
-    amplitude: float
-    strain: float
+from mdlcad.network.model import Coupling, Mass, Network
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,7 +54,7 @@ def size(network: Network, process: Process, peak: Mapping[str, float]) -> Sizin
     series = series_spring(process, law, row_pitch, k_least, max(absorbed.values()))
     units = tuple(_unit(mass, absorbed[mass.name], peak[mass.name], process, law) for mass in network.masses)
     rules = _rules(network, process, law, series, units, couplers, biases, throw, row_pitch)
-    findings = _findings(network, process, law, series, units, couplers, biases, rules)
+    findings = findings_of(network, process, law, series, units, couplers, biases, rules)
     return Sizing(process.name, law, series, units, couplers, biases, rules, findings)
 
 
@@ -260,62 +200,3 @@ def _rules(
             for item in biases
         },
     )
-
-
-def _findings(
-    network: Network,
-    process: Process,
-    law: UnitLaw,
-    series: SeriesSpring,
-    units: tuple[UnitSize, ...],
-    couplers: tuple[CouplerSize, ...],
-    biases: tuple[BiasSize, ...],
-    rules: LayoutRules,
-) -> tuple[Finding, ...]:
-    found: list[Finding] = []
-
-    def most(rule: str, subject: str, value: float, limit: float, message: str) -> None:
-        if value > limit:
-            found.append(Finding(rule, subject, value, limit, message))
-
-    def least(rule: str, subject: str, value: float, limit: float, message: str) -> None:
-        if value < limit:
-            found.append(Finding(rule, subject, value, limit, message))
-
-    machine, link = process.machine, process.link
-    material = process.material(process.plates(PlateRole.UNIT)[0])
-    limit = material.strain_limit
-    least("min_wall", "unit.beam", process.unit.beam_wall, machine.min_wall, "beams thinner than the machine makes")
-    least("min_wall", "unit.series", series.wall, machine.min_wall, "series leaves thinner than the machine makes")
-    least("min_gap", "link.gap", link.gap, machine.min_gap, "gap narrower than the machine makes")
-    most("strain", "unit.series", series.strain_settled, limit, "series leaves strained with settled shuttles")
-    peak = "series leaves strained if a clock peak finds a shuttle held at 0"
-    most("strain_peak", "unit.series", series.strain, material.strain_peak, peak)
-    for unit in units:
-        most("strain", f"unit.{unit.mass}", unit.strain, limit, "beams strained at the largest throw seen")
-    for mass in network.masses:
-        spread = max(abs(other.k1) for other in network.masses) - abs(mass.k1)
-        most("gain", f"unit.{mass.name}", spread, 0.0, "clock plates have one stroke: its k1 cannot be smaller")
-    sheet_limit = process.material(process.plates(PlateRole.RUNG)[0]).strain_limit
-    for kind, name, leaf in [("coupler", c.coupling, c.leaf) for c in couplers] + [
-        ("bias", b.mass, b.leaf) for b in biases
-    ]:
-        values = {
-            "strain": (leaf.strain, sheet_limit),
-            "slope": (leaf.slope, link.slope_limit),
-            "clearance": (leaf.clearance, link.leg_gap),
-            "quartic": (leaf.quartic * process.unit.throw_unit**2 / law.stiffness_unit, link.quartic_limit),
-        }
-        for miss in leaf.misses:
-            found.append(Finding(miss, f"{kind}.{name}", *values[miss], "no meander of the template keeps this limit"))
-    for coupling in network.couplings:
-        if coupling.kind is not CouplingKind.LINEAR or coupling.d1 != 0.0:
-            found.append(
-                Finding(
-                    "clocked", f"coupler.{coupling.name}", coupling.d1, 0.0, "a clocked coupling has no passive part"
-                )
-            )
-    half = rules.row_pitch - rules.throw - rules.hub_height / 2.0 - rules.gap - rules.eye_radius
-    for bias in biases:
-        most("bias_offset", f"bias.{bias.mass}", abs(bias.offset), half, "its post comes too near the neighbouring row")
-    return tuple(found)

@@ -8,7 +8,7 @@ from shapely.affinity import translate
 
 from mdlcad.mechanics.flexure import deflect, drawn_in, examine
 from mdlcad.mechanics.leaves import LeafKind, chain_of, eye_radius
-from mdlcad.mechanics.sizing import BiasSize
+from mdlcad.mechanics.sizes import BiasSize
 from mdlcad.parts import palette
 from mdlcad.parts.body import Body, BodyKind
 from mdlcad.parts.leaf import (

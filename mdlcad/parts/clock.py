@@ -10,11 +10,11 @@ from shapely import Polygon
 from shapely.affinity import translate
 
 from mdlcad.errors import UsageError
-from mdlcad.mechanics.sizing import UnitSize
+from mdlcad.mechanics.sizes import UnitSize
 from mdlcad.parts import palette
 from mdlcad.parts.body import Body, BodyKind
 from mdlcad.parts.frame import interior
-from mdlcad.parts.shapes import GRID, box, cut, join, only, pieces, square
+from mdlcad.parts.shapes import GRID, box, cut, join, only, pieces, square, without_thin
 from mdlcad.parts.stack import Hub, Stack, clock_ref
 from mdlcad.parts.unit import clock_pin_x
 
@@ -93,7 +93,7 @@ def clock_plates(
             run = reach + rules.clock_throw + body.throw[0]
             away.append(box(x - run, y - reach, x + run, y + reach))
         try:
-            whole = only(cut(join([inner, tongue]), away))
+            whole = only(without_thin(cut(join([inner, tongue]), away), stack.process.pin.wall))
             section, held = only(whole.intersection(inner)), only(shapely.difference(whole, inner, grid_size=GRID))
         except ValueError as error:
             raise UsageError(f"the boundary is so narrow that the clock plate {plate} falls apart: {error}") from error

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from mdlcad.mechanics.sizing import CouplerSize
+from mdlcad.mechanics.sizes import CouplerSize
 from mdlcad.parts import palette
 from mdlcad.parts.body import Body, BodyKind
 from mdlcad.parts.leaf import hub_block, leaf_start, meander_path, outward, wall_strip

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from mdlcad.mechanics.leaves import eye_radius
-from mdlcad.mechanics.sizing import CouplerSize
+from mdlcad.mechanics.sizes import CouplerSize
 from mdlcad.parts import palette
 from mdlcad.parts.body import Body, BodyKind
 from mdlcad.parts.leaf import hub_block, leaf_start, meander_path, outward, wall_strip

@@ -51,6 +51,13 @@ def cut(shape: Geometry, holes: Iterable[Geometry]) -> Geometry:
     return shapely.difference(_snap(shape), shapely.union_all(away, grid_size=GRID), grid_size=GRID)
 
 
+def without_thin(shape: Geometry, wall: float) -> Geometry:
+    """``shape`` without what is thinner than ``wall``: a slot close to an edge is opened to it."""
+    half = wall / 2.0 - 10.0 * GRID
+    opened = shape.buffer(-half, join_style="mitre").buffer(half + GRID, join_style="mitre")
+    return shapely.intersection(shape, opened, grid_size=GRID)
+
+
 def only(shape: Geometry) -> Polygon:
     """The one polygon of a shape, tidied: no needless vertices, oriented, starting at its least vertex.
 

@@ -10,7 +10,7 @@ import shapely
 from shapely import Polygon
 from shapely.affinity import translate
 
-from mdlcad.mechanics.sizing import UnitSize
+from mdlcad.mechanics.sizes import UnitSize
 from mdlcad.parts import palette
 from mdlcad.parts.body import Body, BodyKind
 from mdlcad.parts.shapes import box, cut, join, only, square, strip
