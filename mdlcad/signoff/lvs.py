@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import networkx as nx
 import shapely
+from shapely import Polygon
 
 from mdlcad.network.model import Network
 from mdlcad.signoff.readback import ReadBody
@@ -120,11 +121,12 @@ def _flexures(
             touching[a].append(b)
         if b in touching:
             touching[b].append(a)
+    posts_at = [index for index, kind in enumerate(kinds) if kind == "post"]
     connections, biased = [], []
     for index, others in touching.items():
         bars = {shuttle.get(group[o], "?") for o in others if kinds[o] in ("rung", "trunk", "tab")}
         hubs = {shuttle.get(group[o], "?") for o in others if kinds[o] == "pin"}
-        posts = sum(kinds[o] == "post" for o in others)
+        posts = sum(_surrounds(bodies[index], bodies[post]) for post in posts_at)
         name = bodies[index].name
         if len(hubs) != 1 or len(bars) > 1 or (not bars and posts != 1) or posts > 1:
             problems.append(
@@ -136,6 +138,12 @@ def _flexures(
             biased.append(hubs.pop())
     connections.sort(key=lambda item: (item.source, item.target))
     return connections, biased
+
+
+def _surrounds(flexure: ReadBody, post: ReadBody) -> bool:
+    """Whether the post stands in an eye or slot of the flexure (with play, so they need not touch)."""
+    outline = Polygon(flexure.section.exterior)
+    return _overlap_in_z(flexure, post) and bool(outline.contains(post.section.centroid))
 
 
 def compare(recovered: Recovered, network: Network) -> LvsResult:
