@@ -22,15 +22,17 @@ class GridWalk(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag_fiel
 
     Attributes:
         map: rows of equal length; "#" a wall, "." floor, "S" the start, "E" the exit. Beyond the map all is wall.
-        sensors: sensor name -> the direction in which it feels a wall ("left", "up", "right", "down").
-        moves: actuator name -> its value -> the direction in which it moves the device, or "stay".
+        sensors: sensor name -> the direction in which it feels a wall ("left", "up", "right", "down"). Without any,
+            every sensor feels the way that its side of the boundary faces.
+        moves: actuator name -> its value -> the direction in which it moves the device, or "stay". Without any, the
+            labels of an actuator's values tell.
         decisions: the exit must be reached within so many.
         design: the device that this scenario was written for; it is run if that is simulated without a scenario.
     """
 
     map: tuple[str, ...]
-    sensors: dict[str, str]
-    moves: dict[str, dict[str, str]]
+    sensors: dict[str, str] = {}
+    moves: dict[str, dict[str, str]] = {}
     decisions: int = 200
     design: str = ""
 
@@ -52,9 +54,15 @@ class Step(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Script(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag_field="kind", tag="script"):
-    """A list of things done to the device, one after the other. ``design`` is as in ``GridWalk``."""
+    """A list of things done to the device, one after the other.
+
+    Attributes:
+        also: name of a port in the steps -> other names by which a device may call it.
+        design: as in ``GridWalk``.
+    """
 
     steps: tuple[Step, ...]
+    also: dict[str, tuple[str, ...]] = {}
     design: str = ""
 
 
@@ -135,7 +143,7 @@ def _check_walk(path: Path, walk: GridWalk) -> None:
     for mark, word in (("S", "start"), ("E", "exit")):
         if whole.count(mark) != 1:
             raise wrong("map", f'needs one {word} "{mark}", and has {whole.count(mark)}')
-    if len(walk.moves) != 1:
+    if len(walk.moves) > 1:
         raise wrong("moves", "needs the values of one actuator, as [moves.NAME]")
     if not 1 <= walk.decisions <= MOST_DECISIONS:
         raise wrong("decisions", f"must be 1 to {MOST_DECISIONS}")

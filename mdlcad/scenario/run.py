@@ -57,7 +57,8 @@ def run_scenario(folder: Path, scenario: str | None, say: Callable[[str], None])
     try:
         journey = travel(network, reference, world)
     except NoTick as problem:
-        _write(folder, name, {"network.png": picture(network, seats)})
+        with matplotlib.style.context("default"):
+            _write(folder, name, {"network.png": picture(network, seats)})
         return [str(problem)]
     result = _result(name, network, journey)
     for line in _telling(result):

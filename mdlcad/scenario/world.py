@@ -171,26 +171,69 @@ def _maze(walk: GridWalk, device: Device, file: str) -> Maze:
     ports = ports_of(device)
     looks = []
     for name, direction in walk.sensors.items():
-        sensor = _port(device.sensors, name, f"{file}: sensors.{name}", device.name, "sensor")
+        sensor = _port(device.sensors, (name,), f"{file}: sensors.{name}", device.name, "sensor")
         if len(sensor.places) != 1:
             raise UsageError(
                 f"{file}: sensors.{name}: feels walls, so it must have one bit; it has {len(sensor.places)}"
             )
         looks.append((ports.inputs.index(f"{name}[0]"), _direction(direction, f"{file}: sensors.{name}")))
-    name, values = next(iter(walk.moves.items()))
-    actuator = _port(device.actuators, name, f"{file}: moves.{name}", device.name, "actuator")
-    moves = {}
-    for value, direction in values.items():
-        key = f"{file}: moves.{name}.{value}"
-        digits = _value(actuator, value, key)
-        if digits in moves:
-            raise UsageError(f"{key}: gives the value {digits} a second direction")
-        moves[digits] = (0, 0) if direction == "stay" else _direction(direction, key)
+    looks = looks or facing(device)
+    if not looks:
+        raise UsageError(f"{file}: sensors: no side of {device.name} with a sensor faces left, up, right or down")
+    actuator, moves = _moves(walk, device, file)
 
     def find(mark: str) -> Cell:
         return next((row, text.index(mark)) for row, text in enumerate(walk.map) if mark in text)
 
     return Maze(ports, walk.map, find("S"), find("E"), tuple(looks), actuator, moves, walk.decisions)
+
+
+def _moves(walk: GridWalk, device: Device, file: str) -> tuple[Actuator, dict[str, Cell]]:
+    for name, values in walk.moves.items():
+        actuator = _port(device.actuators, (name,), f"{file}: moves.{name}", device.name, "actuator")
+        moves: dict[str, Cell] = {}
+        for value, direction in values.items():
+            key = f"{file}: moves.{name}.{value}"
+            digits = _value(actuator, value, key)
+            if digits in moves:
+                raise UsageError(f"{key}: gives the value {digits} a second direction")
+            moves[digits] = (0, 0) if direction == "stay" else _direction(direction, key)
+        return actuator, moves
+    told = [(actuator, found) for actuator in device.actuators if (found := labelled_ways(actuator))]
+    if len(told) != 1:
+        raise UsageError(
+            f"{file}: moves: {len(told)} actuators of {device.name} have values that are called left, up, right or "
+            "down; say under [moves.NAME] which values move it where"
+        )
+    return told[0]
+
+
+def facing(device: Device) -> list[tuple[int, Cell]]:
+    """(place in the vector of inputs, direction) of every sensor bit on a side that faces left, up, right or down."""
+    lines = {line.name: line for line in device.boundary}
+    places = [place for sensor in device.sensors for place in sensor.places]
+    looks = []
+    for number, place in enumerate(places):
+        (x0, y0), (x1, y1) = lines[place.line].start, lines[place.line].end
+        # the boundary runs clockwise with y upwards, so (y0 - y1, x1 - x0) points outwards; rows count downwards
+        out = (x0 - x1, y0 - y1)
+        if 0 in out:
+            looks.append((number, (_sign(out[0]), _sign(out[1]))))
+    return looks
+
+
+def labelled_ways(actuator: Actuator) -> dict[str, Cell]:
+    """The values of ``actuator`` whose labels have one of the words left, up, right, down, in any case."""
+    ways = {}
+    for value in actuator.values:
+        words = [word for word in value.label.lower().split() if word in DIRECTIONS]
+        if len(words) == 1 and len(value.bits) == len(actuator.places):
+            ways[value.bits] = DIRECTIONS[words[0]]
+    return ways
+
+
+def _sign(number: int) -> int:
+    return (number > 0) - (number < 0)
 
 
 def _hands(script: Script, device: Device, file: str) -> Hands:
@@ -199,11 +242,13 @@ def _hands(script: Script, device: Device, file: str) -> Hands:
     for number, step in enumerate(script.steps):
         place = f"{file}: steps[{number}]"
         for name, value in step.set.items():
-            sensor = _port(device.sensors, name, f"{place}.set.{name}", device.name, "sensor")
-            now[name] = _value(sensor, value, f"{place}.set.{name}")
+            names = (name, *script.also.get(name, ()))
+            sensor = _port(device.sensors, names, f"{place}.set.{name}", device.name, "sensor")
+            now[sensor.name] = _value(sensor, value, f"{place}.set.{name}")
         expected = []
         for name, value in step.expect.items():
-            actuator = _port(device.actuators, name, f"{place}.expect.{name}", device.name, "actuator")
+            names = (name, *script.also.get(name, ()))
+            actuator = _port(device.actuators, names, f"{place}.expect.{name}", device.name, "actuator")
             expected.append((actuator, _value(actuator, value, f"{place}.expect.{name}")))
         sensors = tuple((sensor, now[sensor.name]) for sensor in device.sensors)
         steps += [ScriptStep(sensors, (), step.say)] * (step.repeat - 1)
@@ -211,9 +256,9 @@ def _hands(script: Script, device: Device, file: str) -> Hands:
     return Hands(ports_of(device), tuple(steps))
 
 
-def _port(ports: Sequence[_P], name: str, key: str, design: str, kind: str) -> _P:
+def _port(ports: Sequence[_P], names: tuple[str, ...], key: str, design: str, kind: str) -> _P:
     for port in ports:
-        if port.name == name:
+        if port.name in names:
             return port
     known = ", ".join(port.name for port in ports)
     raise UsageError(f"{key}: {design} has no {kind} of this name; it has {known}")

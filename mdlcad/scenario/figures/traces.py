@@ -55,8 +55,9 @@ def traces(network: Network, journey: Journey, steps: Ints, x: Floats, decisions
         _strip(axes, rows, journey, steps, x, first, first + length, min(shown, first + length))
         _heads(axes[0], decisions[first : min(shown, first + length)])
     more = f"; {journey.decisions - shown} more decisions follow" if shown < journey.decisions else ""
+    cycles = "1 clock cycle" if journey.timing.period == 1 else f"{journey.timing.period} clock cycles"
     axes[-1].set_xlabel(
-        f"decision ({journey.timing.period} clock cycle{'' if journey.timing.period == 1 else 's'} each){more}. "
+        f"decision ({cycles} each){more}. "
         "Dots: where a mass is read, blue 0, orange 1, red neither. Upside-down masses are turned.",
         fontsize=8.5,
         color=INK,
