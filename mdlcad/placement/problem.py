@@ -8,9 +8,10 @@ import numpy as np
 import numpy.typing as npt
 
 from mdlcad.mechanics.rules import LayoutRules
-from mdlcad.network.model import CouplingKind, Network
+from mdlcad.network.model import Network
 from mdlcad.placement.grid import TabTerminal, free_intervals, holding
 from mdlcad.placement.lattice import Lattice
+from mdlcad.placement.linkable import unrealisable
 
 Ints = npt.NDArray[np.int32]
 Floats = npt.NDArray[np.float64]
@@ -51,12 +52,9 @@ class Problem(NamedTuple):
 
 
 def realisable(network: Network, rules: LayoutRules) -> tuple[int, ...]:
-    """Indices of the couplings that mechanics gives a linkage for."""
-    return tuple(
-        index
-        for index, coupling in enumerate(network.couplings)
-        if coupling.kind is CouplingKind.LINEAR and coupling.name in rules.couplers
-    )
+    """Indices of the couplings that some layout can hold."""
+    never = unrealisable(network, rules)
+    return tuple(index for index, coupling in enumerate(network.couplings) if coupling.name not in never)
 
 
 def build(network: Network, lattice: Lattice, rules: LayoutRules) -> Problem:
@@ -93,7 +91,8 @@ def build(network: Network, lattice: Lattice, rules: LayoutRules) -> Problem:
                 rules.hub_half + half,
                 rules.track_pitch,
                 len(rules.link_plates),
-                max(rules.biases.values(), default=0.0) + rules.post_radius - half,
+                max((rules.bias_ends.get(m, r + rules.post_radius) for m, r in rules.biases.items()), default=0.0)
+                - half,
             ]
         ),
     )

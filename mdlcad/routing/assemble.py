@@ -8,6 +8,7 @@ from mdlcad.mechanics.rules import LayoutRules
 from mdlcad.network.model import Network
 from mdlcad.placement.grid import TabTerminal
 from mdlcad.placement.lattice import Lattice
+from mdlcad.placement.linkable import unrealisable
 from mdlcad.placement.placement import Placement
 from mdlcad.routing.channel import ChannelRoute
 from mdlcad.routing.layout import BiasLeaf, CouplerLeaf, EndKind, Layout, Rung, RungEnd, Side, Tab, Trunk
@@ -43,7 +44,7 @@ class _Pieces:
         """The end of an item's rung away from its trunk (or source hub); adds the flexure or tab found there."""
         if item.role is Role.SOURCE:
             return RungEnd(EndKind.HUB, hubs[item.net][0], item.net)
-        if item.ref in tabs:
+        if item.role in (Role.TAB, Role.STRAIGHT_TAB):
             tab = tabs[item.ref]
             self.tabs.append(Tab(item.ref, item.net, plate, tab.path))
             return RungEnd(EndKind.TAB, tab.x, item.ref)
@@ -93,13 +94,12 @@ def assemble(
             far = out.far_end(item, plate, hubs, targets, tabs, rules)
             near = via if via is not None else RungEnd(EndKind.HUB, hubs[item.net][0], item.net)
             left, right = sorted((near, far), key=lambda end: end.x)
-            y = tabs[item.ref].y if item.ref in tabs else (item.y_low + item.y_high) / 2
+            y = (item.y_low + item.y_high) / 2
             out.add_rung(item.net, plate, round(y, 6), left, right)
     order = {mass.name: index for index, mass in enumerate(network.masses)}
+    never = unrealisable(network, rules)
     unrealised = tuple(
-        (coupling.name, f"mechanics has no linkage for this {coupling.kind.value} coupling")
-        for coupling in network.couplings
-        if coupling.name not in {leaf.coupling for leaf in out.couplers}
+        (coupling.name, never[coupling.name]) for coupling in network.couplings if coupling.name in never
     )
     return Layout(
         rungs=tuple(sorted(out.rungs, key=lambda rung: (order[rung.net], rung.name))),

@@ -114,7 +114,7 @@ class _Model:
         if set(a.hubs) & set(b.hubs):
             self._share(i, j, False, False)
         own = a.net == b.net and Role.BIAS not in (a.role, b.role)
-        if own and not {a.role, b.role} == {Role.COUPLER, Role.TAB}:
+        if own and {a.role, b.role} != {Role.COUPLER, Role.TAB}:
             return
         for box_a in self._boxes(i):
             for box_b in self._boxes(j):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 from shapely import LineString, Point, Polygon, box, union_all
 from shapely.affinity import translate
@@ -189,6 +190,6 @@ def _sweep(shape: Polygon, throw: float) -> Polygon:
     # a bent tab: sweep each of its convex edges' boxes
     coordinates = list(shape.exterior.coords)
     pieces = [translate(shape, 0.0, step) for step in steps]
-    for (x0, y0), (x1, y1) in zip(coordinates, coordinates[1:], strict=False):
+    for (x0, y0), (x1, y1) in pairwise(coordinates):
         pieces.append(box(min(x0, x1), min(y0, y1) - throw, max(x0, x1), max(y0, y1) + throw))
     return union_all([piece for piece in pieces if piece.area > 0])

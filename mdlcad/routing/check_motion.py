@@ -15,7 +15,7 @@ TOLERANCE = 1e-5
 
 
 def check_motion(solids: Sequence[Solid], rules: LayoutRules) -> list[Raw]:
-    """Pairs on one plate that come too near at the worst of their strokes, and leaves that run into their own bodies."""
+    """Pairs on one plate that come too near at the worst of their strokes, and leaves that run into their bodies."""
     found: list[Raw] = []
     for plate in sorted({solid.plate for solid in solids}):
         members = [solid for solid in solids if solid.plate == plate]

@@ -19,11 +19,14 @@ from mdlcad.placement.placer import Sides
 
 
 class Role(StrEnum):
+    """What an item is: hub to trunk, trunk to target, hub to target, a bias leaf, trunk to port, hub to port."""
+
     SOURCE = "source"
     COUPLER = "coupler"
     STRAIGHT = "straight"
     BIAS = "bias"
     TAB = "tab"
+    STRAIGHT_TAB = "straight tab"
 
 
 def units(length: float) -> int:
@@ -130,7 +133,7 @@ def _bias(channel: Channel, hub: PlacedMass, sides: Sides, lattice: Lattice, rul
     reach, half = rules.biases[hub.mass], rules.hub_height / 2
     sign = 1 if side == 1 else -1
     post = hub.x + sign * reach
-    ends = sorted((hub.x, post + sign * rules.post_radius))
+    ends = sorted((hub.x, hub.x + sign * rules.bias_ends.get(hub.mass, reach + rules.post_radius)))
     strip = free_intervals(lattice.inner, hub.y - half - rules.throw, hub.y + half + rules.throw)
     span = holding(strip, hub.x)
     if span is None or ends[0] < span[0] - 1e-6 or ends[1] > span[1] + 1e-6:
@@ -237,7 +240,7 @@ def _straight_tab(channel: Channel, source: PlacedMass, side: int, tab: TabTermi
     low, high = sorted((source.x, tab.path[1][0]))
     channel.items.append(
         Item(
-            Role.STRAIGHT,
+            Role.STRAIGHT_TAB,
             source.mass,
             tab.bit,
             ((source.mass, side),),
