@@ -51,10 +51,12 @@ class BiasTable:
 
 @dataclass(frozen=True, slots=True)
 class GatesTable:
-    """Table ``gates``: greatest total weight of the inputs and the bias of a mass; most targets of a mass."""
+    """Table ``gates``: greatest total weight of the inputs and the bias of a mass; greatest total weight of the
+    couplings from a mass; greatest echo (see ``relieve``) of a mass."""
 
     weight_limit: int
-    fan_out_limit: int
+    load_limit: int
+    echo_limit: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -143,7 +145,8 @@ def _check_values(label: str, library: Library) -> None:
         ("coupling.self_stiffness_negative", library.coupling.self_stiffness_negative >= 0, "must not be negative"),
         ("bias.force", library.bias.force > 0, "must be positive"),
         ("gates.weight_limit", 3 <= library.gates.weight_limit <= 9, "must be 3 to 9"),
-        ("gates.fan_out_limit", library.gates.fan_out_limit >= 2, "must be at least 2"),
+        ("gates.load_limit", library.gates.load_limit >= 3, "must be at least 3"),
+        ("gates.echo_limit", library.gates.echo_limit >= 4, "must be at least 4"),
         ("power_up.well", library.power_up.well > 0, "must be positive"),
     )
     for key, holds, text in rules:

@@ -2,21 +2,28 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from mdlcad.mapping.build import build_network, invert, with_ring
 from mdlcad.mapping.candidates import find_candidates
-from mdlcad.mapping.cover import CoverModel, solve_cover
+from mdlcad.mapping.cover import best_cover
+from mdlcad.mapping.greedy import plain_taste, search
 from mdlcad.mapping.library import Library
 from mdlcad.mapping.names import name_masses
+from mdlcad.mapping.options import OptionGraph
 from mdlcad.mapping.plan import Plan, Role
 from mdlcad.mapping.registers import Wanted, exact_choices, structural_choices
+from mdlcad.mapping.relieve import relieve
 from mdlcad.mapping.restructure import restructure
+from mdlcad.mapping.selection import make_plan
 from mdlcad.mapping.subject import FALSE, TRUE, Subject
 from mdlcad.network.model import Network
 from mdlcad.synthesis.netlist import Netlist
 
-_MOST_CYCLES = 8
-_DETERMINISTIC_TIME = 3.0
+_DETERMINISTIC_TIME = 1.0
 _SEED = 1
+# masses made by the first search; the second works for about as long
+_EFFORT = 150_000
 
 
 def map_netlist(netlist: Netlist, library: Library) -> Network:
@@ -30,9 +37,8 @@ def map_netlist(netlist: Netlist, library: Library) -> Network:
     subject, nets = _make_subject(netlist)
     plan = _make_plan(netlist, library, subject, nets)
     masses, tick = with_ring(plan)
-    names, upside_down = name_masses(
-        Plan(masses, plan.ring, plan.tick_cycle, plan.cycles, plan.carriers), subject, netlist, nets
-    )
+    masses = relieve(masses, library.gates.load_limit, library.gates.echo_limit)
+    names, upside_down = name_masses(replace(plan, masses=masses), subject, netlist, nets)
     carried = frozenset(
         mass.key
         for mass in masses
@@ -72,5 +78,6 @@ def _make_plan(netlist: Netlist, library: Library, subject: Subject, nets: dict[
     choices = [
         exact_choices(subject, candidates, item) if subject.exact else structural_choices(item) for item in wanted
     ]
-    cover = CoverModel(subject, candidates, choices, outputs, limit, _MOST_CYCLES)
-    return solve_cover(cover, _DETERMINISTIC_TIME, _SEED)
+    graph = OptionGraph(subject, candidates, choices, outputs, limit)
+    start = search(graph, plain_taste(graph, [item.following for item in wanted]), _EFFORT, _SEED)
+    return make_plan(graph, best_cover(graph, start, _DETERMINISTIC_TIME, _SEED))

@@ -61,16 +61,18 @@ def name_masses(
             suffix = {Role.STORE: "", Role.FOLLOW: ".q", Role.HOLD: ".hold"}[key.role]
             wishes[key] = netlist.registers[key.of[0]].bit + suffix
     for owner, keys in terms.items():
+        one = len({key.of for key in keys}) == 1
         for key in keys:
             digest = hashlib.sha256("|".join(digests.of(lit) for lit in key.of if lit >= 0).encode()).hexdigest()
-            wishes[key] = f"{owner}.set" if len(keys) == 1 else f"{owner}.set_{digest[:_DIGITS]}"
+            wishes[key] = f"{owner}.set" if one else f"{owner}.set_{digest[:_DIGITS]}"
+    wishes = {key: f"{wish}.twin{key.twin}" if key.twin else wish for key, wish in wishes.items()}
     return _unique(wishes), inverted
 
 
 def _delay(key: Key, gate_phases: list[int]) -> str:
-    """ "" for a gate, ".d1" or ".d2" for a buffer by how far it is behind its gate, ".twin" for a second gate."""
+    """ "" for a gate, ".d1" or ".d2" for a buffer by how far it is behind its gate, ".again" for a second gate."""
     if key.phase in gate_phases:
-        return "" if key.phase == gate_phases[0] else f".twin{gate_phases.index(key.phase)}"
+        return "" if key.phase == gate_phases[0] else f".again{gate_phases.index(key.phase)}"
     return f".d{min((key.phase - phase) % 3 for phase in gate_phases)}"
 
 

@@ -34,12 +34,14 @@ class Key:
     """A planned mass: its role, what it is of, and its phase.
 
     ``of`` is (node,) for SENSOR and LOGIC, (literal,) for LOAD, (load or -1, literal) for TERM, (register index,) for
-    HOLD, STORE and FOLLOW, (output index,) for PORT, (stage,) for STAGE and () for TICK.
+    HOLD, STORE and FOLLOW, (output index,) for PORT, (stage,) for STAGE and () for TICK. ``twin`` counts the masses
+    that compute the same because one alone has too many targets.
     """
 
     role: Role
     of: tuple[int, ...]
     phase: int
+    twin: int = 0
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,7 +13,7 @@ from mdlcad.mapping.candidates import Candidate
 from mdlcad.mapping.subject import FALSE, TRUE, Subject
 from mdlcad.synthesis.netlist import StateBit
 
-_MOST_LITERALS = 24
+_MOST_LITERALS = 8
 
 
 @dataclass(frozen=True, slots=True)
