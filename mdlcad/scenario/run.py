@@ -139,8 +139,9 @@ def _seats(folder: Path, device: Device, network: Network) -> Seats:
         return free_seats(device, network)
     found = placed_seats(_load(path, PlacedSeats))
     missing = [mass.name for mass in network.masses if mass.name not in found.masses]
+    missing += [port.bit for port in (*network.sensors, *network.actuators) if port.bit not in found.ports]
     if missing:
-        raise UsageError(f"{path}: has no place for mass {missing[0]!r} of network.json; build it again")
+        raise UsageError(f"{path}: has no place for {missing[0]!r} of network.json; build it again")
     return found
 
 

@@ -134,11 +134,13 @@ def test_the_same_run_writes_the_same_bytes_and_nothing_else_stays(light: Path, 
 
 def test_placed_masses_are_drawn_in_their_slots(light: Path, tmp_path: Path) -> None:
     build = copy(light, tmp_path)
-    names = [mass.name for mass in network_of(build).masses]
+    network = network_of(build)
+    names = [mass.name for mass in network.masses]
+    ports = (*network.sensors, *network.actuators)
     placed = {
         "boundary": [[0.0, 0.0], [0.0, 300.0], [80.0, 300.0], [80.0, 0.0]],
         "masses": [{"mass": name, "x": 40.0, "y": 20.0 * (i + 1), "row": i} for i, name in enumerate(names)],
-        "ports": [{"bit": "walker[0]", "x": 0.0, "y": 75.0}],
+        "ports": [{"bit": port.bit, "x": 0.0, "y": 75.0 * (i + 1)} for i, port in enumerate(ports)],
     }
     (build / "placement.json").write_bytes(to_json(placed))
     assert run_scenario(build, None, quiet) == []
@@ -146,7 +148,7 @@ def test_placed_masses_are_drawn_in_their_slots(light: Path, tmp_path: Path) -> 
         assert image.height > 1.3 * image.width  # as narrow as the placement's boundary
     placed["masses"] = placed["masses"][1:]
     (build / "placement.json").write_bytes(to_json(placed))
-    with pytest.raises(UsageError, match=r"placement\.json: has no place for mass"):
+    with pytest.raises(UsageError, match=r"placement\.json: has no place for"):
         run_scenario(build, None, quiet)
 
 

@@ -30,7 +30,8 @@ from mdlcad.simulation.system import Floats, Ints
 
 _WIDTH, _HEIGHT, _DPI = 9.0, 4.7, 80
 _MOST_FRAMES = 200
-_COLOURS = 63
+_COLOURS = 80
+_MASS_COLOURS = 40
 
 # displacement: 0 blue, 1 orange, in between white
 _SHADES = LinearSegmentedColormap.from_list("displacement", [ZERO, "#ffffff", ONE])
@@ -100,17 +101,22 @@ def _gif(pictures: list[Image.Image], milliseconds: int) -> bytes:
     sheet = Image.new("RGB", (width, height * len(sample)))
     for number, picture in enumerate(sample):
         sheet.paste(picture, (0, number * height))
-    palette = sheet.quantize(_COLOURS, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
+    found = sheet.quantize(_COLOURS, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
+    # the shades of masses are given, since they cover too little of the picture to be found
+    shades = (255 * _SHADES(np.linspace(0.0, 1.0, _MASS_COLOURS))[:, :3]).round().astype(int).ravel().tolist()
+    colours = [*(found.getpalette() or [])[: 3 * _COLOURS], *shades]
+    palette = Image.new("P", (1, 1))
+    palette.putpalette(colours)
     frames = [np.asarray(picture.quantize(palette=palette, dither=Image.Dither.NONE)) for picture in pictures]
     # what stays as it was is left out, which packs far better; the last index is no colour then
-    clear = _COLOURS
+    clear = len(colours) // 3
     shown = [frames[0]]
     for before, now in pairwise(frames):
         shown.append(np.where(now == before, np.uint8(clear), now))
     images = []
     for frame in shown:
         image = Image.fromarray(frame, mode="P")
-        image.putpalette([*(palette.getpalette() or [])[: 3 * _COLOURS], 255, 255, 255])
+        image.putpalette([*colours, 255, 255, 255])
         images.append(image)
     stream = io.BytesIO()
     times = [milliseconds] * (len(images) - 1) + [2000]

@@ -43,6 +43,8 @@ def picture(network: Network, seats: Seats) -> bytes:
                 color="white",
                 zorder=4,
             )
+    for port in (*network.sensors, *network.actuators):
+        axes.plot(*zip(seats.ports[port.bit], seats.masses[port.mass], strict=True), ":", color=INK, lw=0.8, zorder=1)
     _port_names(axes, seats)
     _legend(axes, network)
     negative = sum(coupling.strength < 0 for coupling in network.couplings)
@@ -135,7 +137,7 @@ def _legend(axes: Axes, network: Network) -> None:
         dot(PHASES[phase % len(PHASES)], "o", 0.9, f"clock wave {phase}") for phase in range(network.dynamics.phases)
     ]
     handles += [
-        dot("white", "s", 0.9, "sensor or actuator"),
+        dot("white", "s", 0.9, "of a sensor or actuator"),
         dot("white", "o", 2.4, "register"),
         dot("white", "D", 0.9, "tick ring"),
         Line2D([], [], color=POSITIVE, lw=1.6, label="coupling"),
