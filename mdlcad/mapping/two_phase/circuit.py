@@ -9,6 +9,7 @@ from mdlcad.mapping.two_phase.clock import TICK, Clock, clock_cells
 from mdlcad.mapping.two_phase.library import Cell, TwoPhaseLibrary
 from mdlcad.mapping.two_phase.logic import Literal, Logic
 from mdlcad.mapping.two_phase.names import Names, name_nodes
+from mdlcad.mapping.two_phase.strain import Pin, Wiring, relieve
 from mdlcad.mapping.two_phase.trees import Branch, TreePlanner
 from mdlcad.network.model import MassKind
 from mdlcad.synthesis.netlist import Netlist
@@ -72,7 +73,8 @@ class CircuitBuilder:
         self._nets = name_nodes(netlist, logic, self._names)
         self._cells: dict[str, tuple[Cell, MassKind]] = {}
         self._sinks: dict[str, list[_Sink]] = {}
-        self._wires: dict[tuple[str, int], str] = {}
+        self._wires: dict[Pin, str] = {}
+        self._peers: dict[Pin, tuple[str, bool]] = {}
 
     def build(self, clock: Clock | None) -> Circuit:
         """The circuit; with ``clock`` None the tick has no source."""
@@ -98,6 +100,8 @@ class CircuitBuilder:
         for register in netlist.registers:
             self._ask(Literal(TICK), register.bit, latch.inputs.index("C"), 0)
         self._grow_ticks()
+        if self._library.options.branching:
+            self._relieve()
 
         instances = {net: self._instance(net) for net in self._cells}
         latches = tuple(instances[register.bit] for register in netlist.registers)
@@ -118,6 +122,17 @@ class CircuitBuilder:
     def _instance(self, net: str) -> Instance:
         cell, kind = self._cells[net]
         return Instance(net, cell, tuple(self._wires[net, pin] for pin in range(len(cell.inputs))), kind)
+
+    def _relieve(self) -> None:
+        def add_buffer(net: str, pin: Pin) -> str:
+            name = self._names.digested(f"{net}.{self._buffer.name.lower()}", f"{pin[0]}/{pin[1]}")
+            self._cells[name] = (self._buffer, MassKind.BUFFER)
+            return name
+
+        biased = {
+            net: len(cell.inputs) for net, (cell, _) in self._cells.items() if any(mass.bias for mass in cell.inner)
+        }
+        relieve(Wiring(self._wires, self._peers, biased), add_buffer)
 
     def _ask(self, literal: Literal, instance: str, pin: int, depth: int) -> None:
         if literal.net == "0":
@@ -186,6 +201,7 @@ class CircuitBuilder:
             if branch.inner is None:
                 sink = sinks[branch.ref]
                 self._wires[sink.instance, sink.pin] = net
+                self._peers[sink.instance, sink.pin] = (root, sink.inverted)
                 continue
             cell = self._inverter if branch.inner.flips else self._buffer
             ends = [f"{sinks[ref].instance}/{sinks[ref].pin}" for ref in branch.ends()]
