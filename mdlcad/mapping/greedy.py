@@ -86,7 +86,7 @@ class Pass:
         options = self._graph.options[key]
         if key.role is Role.LOGIC:
             if any(Key(Role.LOGIC, key.of, phase) in selection.chosen for phase in range(PHASES)):
-                return 0  # a buffer of itself, one phase earlier
+                return _buffer_option(options)
             if self._graph.subject.is_input(key.of[0]):
                 return _own_option(options)
         priced = [
@@ -222,7 +222,12 @@ def _plain_register(graph: OptionGraph, index: int, following: int) -> tuple[int
 
 def _own_option(options: list[Option]) -> int:
     """The option without sources (a sensor itself), or the buffer that a register's masses allow."""
-    return next((number for number, option in enumerate(options) if not option.sources), 0)
+    return next((number for number, option in enumerate(options) if not option.sources), _buffer_option(options))
+
+
+def _buffer_option(options: list[Option]) -> int:
+    """The copy of the mass that carries the same one phase earlier."""
+    return next(number for number, option in enumerate(options) if len(option.sources) == 1)
 
 
 def _area_flow(graph: OptionGraph) -> dict[int, float]:

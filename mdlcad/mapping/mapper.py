@@ -15,7 +15,7 @@ from mdlcad.mapping.plan import Plan, Role
 from mdlcad.mapping.registers import Wanted, exact_choices, structural_choices
 from mdlcad.mapping.relieve import relieve
 from mdlcad.mapping.restructure import restructure
-from mdlcad.mapping.selection import make_plan
+from mdlcad.mapping.selection import make_plan, selection_cost
 from mdlcad.mapping.subject import FALSE, TRUE, Subject
 from mdlcad.network.model import Network
 from mdlcad.synthesis.netlist import Netlist
@@ -78,6 +78,8 @@ def _make_plan(netlist: Netlist, library: Library, subject: Subject, nets: dict[
     choices = [
         exact_choices(subject, candidates, item) if subject.exact else structural_choices(item) for item in wanted
     ]
-    graph = OptionGraph(subject, candidates, choices, outputs, limit)
+    graph = OptionGraph(subject, candidates, choices, outputs, library.gates)
     start = search(graph, plain_taste(graph, [item.following for item in wanted]), _EFFORT, _SEED)
-    return make_plan(graph, best_cover(graph, start, _DETERMINISTIC_TIME, _SEED))
+    found = best_cover(graph, start, _DETERMINISTIC_TIME, _SEED)
+    # the exact search knows nothing of twins
+    return make_plan(graph, min(found, start, key=lambda selection: selection_cost(graph, selection)))

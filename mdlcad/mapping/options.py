@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from mdlcad.mapping.candidates import Candidate
+from mdlcad.mapping.library import GatesTable
 from mdlcad.mapping.plan import Key, Role
 from mdlcad.mapping.registers import RegisterChoices, SetChoice
 from mdlcad.mapping.subject import FALSE, TRUE, Subject
@@ -61,6 +62,7 @@ class OptionGraph:
         required: masses that are needed whatever is decided.
         carriers: for every output the masses that can show it; it needs one of them.
         sensors: for every sensor its own mass in each phase; exactly one of them takes its option without sources.
+        load_limit, echo_limit: beyond which a mass needs a twin (see ``relieve``).
     """
 
     def __init__(
@@ -69,9 +71,11 @@ class OptionGraph:
         candidates: list[tuple[Candidate, ...]],
         registers: list[RegisterChoices],
         outputs: list[int],
-        weight_limit: int,
+        limits: GatesTable,
     ) -> None:
         self.subject = subject
+        self.load_limit = limits.load_limit
+        self.echo_limit = limits.echo_limit
         self.registers = registers
         self.outputs = outputs
         self.options: dict[Key, list[Option]] = {}
@@ -79,7 +83,7 @@ class OptionGraph:
         self.carriers: list[tuple[Carrier, ...]] = []
         self.sensors: list[tuple[Key, ...]] = []
         self._candidates = candidates
-        self._weight_limit = weight_limit
+        self._weight_limit = limits.weight_limit
         self._pending: list[Key] = []
         self._register_of = {choices.output >> 1: index for index, choices in enumerate(registers)}
         for index in range(len(registers)):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from mdlcad.mapping.options import Carrier, Option, OptionGraph
+from mdlcad.mapping.options import TICK0, TICK2, Carrier, Option, OptionGraph
 from mdlcad.mapping.plan import Key, Plan, PlannedMass, Role
 from mdlcad.mapping.threshold import Threshold
 from mdlcad.mapping.tickring import LEAST_CYCLES, plan_ring
@@ -123,13 +123,21 @@ CYCLE_COST = 2
 
 
 def selection_cost(graph: OptionGraph, selection: Selection) -> int:
-    """What the search minimises: masses, the ring's included, then couplings and cycles."""
+    """What the search minimises: masses, the ring's and about as many twins as will be needed included, then couplings
+    and cycles."""
     cost = CYCLE_COST * selection.cycles + MASS_COST * len(selection.chosen)
-    ticks = set()
+    targets: dict[Key, list[tuple[Key, int]]] = {}
     for key in selection.chosen:
         option = selection.option(graph, key)
-        cost += COUPLING_COST * sum(abs(w) for w in option.function.weights)
-        ticks |= {source for source in option.sources if source.role is Role.TICK}
+        for source, weight in zip(option.sources, option.function.weights, strict=True):
+            targets.setdefault(source, []).append((key, abs(weight)))
+            cost += COUPLING_COST * abs(weight)
     if graph.registers:
-        cost += MASS_COST * plan_ring(selection.cycles).masses(len(ticks) > 1)
+        cost += MASS_COST * plan_ring(selection.cycles).masses(TICK0 in targets and TICK2 in targets)
+    load = {key: sum(weight for _, weight in found) for key, found in targets.items()}
+    for key, found in targets.items():
+        if key.role is Role.LOGIC and not selection.option(graph, key).sources:
+            continue  # a sensor
+        echo = sum(weight * load.get(target, 0) for target, weight in found)
+        cost += MASS_COST * max((load[key] - 1) // graph.load_limit, (echo - 1) // graph.echo_limit, 0)
     return cost
