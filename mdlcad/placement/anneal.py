@@ -15,7 +15,7 @@ import numba
 import numpy as np
 import numpy.typing as npt
 
-from mdlcad.placement.problem import LEFT_WALL, UP_OR_DOWN, Ints, Problem
+from mdlcad.placement.problem import BETWEEN, Ints, Problem
 from mdlcad.placement.state import DEEP, State
 
 HARD = 12.0
@@ -115,9 +115,9 @@ def _half(p: Problem, s: State, mass: int, side: int, sign: int) -> float:
             chosen = coupling
             straight = across != 0 and p.slot[there, 1] == row
     for tab in range(p.mass[mass, 2], p.mass[mass + 1, 2]):
-        if p.tab[tab, 0] == channel:
+        if p.way[tab, column, 0] == channel:
             tabs += 1
-            straight = p.tab[tab, 4] != UP_OR_DOWN and p.tab[tab, 3] == row
+            straight = p.tab[tab, 2] == row
     if targets + tabs == 0:
         return 0.0
     if targets + tabs == 1 and straight:
@@ -154,13 +154,12 @@ def _half(p: Problem, s: State, mass: int, side: int, sign: int) -> float:
                 x_low = x_low if free else max(x_low, p.limits[channel, at, 3])
             cost += _piece(p, s, net, channel, at, hub, p.coupling[coupling, 2] != 0, sign)
     for tab in range(p.mass[mass, 2], p.mass[mass + 1, 2]):
-        if p.tab[tab, 0] == channel:
-            low, high = min(low, p.tab[tab, 1]), max(high, p.tab[tab, 2])
-            kind = p.tab[tab, 4]
-            for at in range(p.tab[tab, 1], p.tab[tab, 2] + 1):
-                # a tab in y stands between what hangs on the left and what hangs on the right
+        if p.way[tab, column, 0] == channel:
+            low, high = min(low, p.tab[tab, 0]), max(high, p.tab[tab, 1])
+            kind = p.way[tab, column, 3]
+            for at in range(p.tab[tab, 0], p.tab[tab, 1] + 1):
                 for hub in range(2):
-                    if kind == UP_OR_DOWN or hub == (0 if kind == LEFT_WALL else 1):
+                    if kind == BETWEEN or hub == kind:
                         cost += _piece(p, s, net, channel, at, hub, False, sign)
     cost += sign * WIRE * (high - low)
     for at in range(low, high + 1):
@@ -298,8 +297,27 @@ def _span(p: Problem, s: State, nets: Ints, n: int) -> float:
         for i in range(p.mass[mass, 0], p.mass[mass + 1, 0]):
             far += max(0, abs(p.slot[s.mass[p.coupling[p.outs[i], 1], SLOT], 0] - column) - 1)
         for tab in range(p.mass[mass, 2], p.mass[mass + 1, 2]):
-            far += max(0, p.tab[tab, 0] - column - 1, column - p.tab[tab, 0])
+            if p.way[tab, column, 0] < 0:
+                far += p.way[tab, column, 2]
     return HARD * far
+
+
+@numba.njit(cache=True)
+def _passes(p: Problem, s: State) -> float:
+    """Penalty of tabs that pass over hub columns: their length, and the masses in their way."""
+    cost = 0.0
+    for mass in range(len(s.mass)):
+        for tab in range(p.mass[mass, 2], p.mass[mass + 1, 2]):
+            w = p.way[tab, p.slot[s.mass[mass, SLOT], 0]]
+            if w[0] < 0:
+                continue
+            for column in range(w[1], w[2] + 1):
+                cost += 10 * WIRE
+                for row in range(p.tab[tab, 0], p.tab[tab, 1] + 1):
+                    slot = p.slot_at[column, row]
+                    if slot >= 0 and s.mass_at[slot] >= 0:
+                        cost += HARD
+    return cost
 
 
 @numba.njit(cache=True)
@@ -343,7 +361,7 @@ def anneal(
     """
     masses, couplings = len(s.mass), len(p.coupling)
     nets = np.arange(max(masses, 4 * DEEP)).astype(np.int32)
-    cost = _span(p, s, nets, masses)
+    cost = _span(p, s, nets, masses) + _passes(p, s)
     for mass in range(masses):
         nets[0] = mass
         cost += _tally(p, s, nets, 1, mass, -1, 1)
@@ -354,6 +372,8 @@ def anneal(
         cost += known[channel]
     new = known.copy()
     for move in range(moves):
+        if move % 1000 == 0 and cost < 0.9 * HARD:
+            break
         heat = hot * (cold / hot) ** (move / moves)
         kind = 2
         if fixed or _draw(random) < 0.15:
@@ -377,9 +397,9 @@ def anneal(
             n = _gather(p, mass, nets, 0)
             if other >= 0:
                 n = _gather(p, other, nets, n)
-            reach = -_span(p, s, nets, n)
+            reach = -_span(p, s, nets, n) - _passes(p, s)
             _swap(s, mass, slot)
-            reach += _span(p, s, nets, n)
+            reach += _span(p, s, nets, n) + _passes(p, s)
             _swap(s, mass, old)
             if reach > 0 and _draw(random) >= math.exp(-reach / heat):
                 continue

@@ -28,7 +28,7 @@ class TabTerminal:
     Attributes:
         bit, mass: the port and the mass whose net carries its tab.
         vertical: True for a wall whose normal is mostly y: the tab leaves the rung's row in y.
-        channel: the channel that the net's trunk (or straight rung) must use.
+        channel: the channel that holds the bend (vertical) or ends at the wall (horizontal).
         rows: rows of the lattice whose items the tab's rung may meet (its own row, or the two it lies between).
         row: the lattice row that the rung lies in exactly, or None if it lies between rows.
         x: the bend (vertical) or the inner edge of the rim (horizontal). y: the rung's height.
@@ -46,6 +46,27 @@ class TabTerminal:
     y: float
     outside: int
     path: tuple[tuple[float, float], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Way:
+    """How the net of a mass in some column gets to a tab: from ``channel`` over the hub columns first..last (none if
+    first > last), whose slots in the tab's rows must be empty."""
+
+    channel: int
+    first: int
+    last: int
+
+
+def way(tab: TabTerminal, column: int) -> Way | None:
+    """The way from a mass in ``column`` to ``tab``; None if the wall itself is in between."""
+    if column < tab.channel:
+        if not tab.vertical and tab.outside < 0 and column < tab.channel - 1:
+            return None
+        return Way(column + 1, column + 1, tab.channel - 1)
+    if not tab.vertical and tab.outside > 0 and column > tab.channel:
+        return None
+    return Way(column, tab.channel, column - 1)
 
 
 def inside(boundary: tuple[tuple[float, float], ...], rules: LayoutRules) -> Polygon:

@@ -64,7 +64,7 @@ def lattices(
     most_columns = int((x_high - x_low - rules.unit_left - rules.unit_right) / rules.column_pitch) + 1
     rows = int((y_high - y_low) / rules.row_pitch + 1e-9)
     found: list[tuple[tuple[float, ...], Lattice]] = []
-    for columns in range(most_columns, max(0, most_columns - 2), -1):
+    for columns in range(most_columns, 0, -1):
         if columns * rows < need:
             break
         least = math.ceil(rules.column_pitch / RESOLUTION - 1e-9) * RESOLUTION

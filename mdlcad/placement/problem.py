@@ -9,15 +9,15 @@ import numpy.typing as npt
 
 from mdlcad.mechanics.rules import LayoutRules
 from mdlcad.network.model import Network
-from mdlcad.placement.grid import TabTerminal, free_intervals, holding
+from mdlcad.placement.grid import TabTerminal, free_intervals, holding, way
 from mdlcad.placement.lattice import Lattice
 from mdlcad.placement.linkable import unrealisable
 
 Ints = npt.NDArray[np.int32]
 Floats = npt.NDArray[np.float64]
 
-LEFT_WALL, RIGHT_WALL, UP_OR_DOWN = 0, 1, 2
-"""How a tab meets its rows: from the left wall, from the right wall, or in y."""
+BETWEEN = 2
+"""A tab whose bend lies in its net's own channel, between what hangs on the left and on the right."""
 
 
 class Problem(NamedTuple):
@@ -27,7 +27,9 @@ class Problem(NamedTuple):
         coupling: (J, 3) source mass, target mass, whether it has a post.
         mass: (M + 1, 4) first entry in ``outs``, in ``ins``, in ``tab``; whether it has a bias leaf.
         outs: couplings by source. ins: driving masses by target.
-        tab: (T, 5) channel, lowest and highest row it meets, row it lies in or -1, kind; ordered by mass.
+        tab: (T, 3) lowest and highest row that its rung meets, row it lies in or -1; ordered by mass.
+        way: (T, columns, 4) from a mass in a column: channel (-1: none), first and last hub column it passes, and on
+            which side of its rows it hangs (0 left, 1 right, 2 between both).
         slot: (S, 2) column, row. slot_at: (columns, rows) slot or -1.
         reach: (J,) distance of a coupling's trunk from its target hub, mm.
         hub_x: (columns,) mm.
@@ -42,6 +44,7 @@ class Problem(NamedTuple):
     outs: Ints
     ins: Ints
     tab: Ints
+    way: Ints
     slot: Ints
     slot_at: Ints
     reach: Floats
@@ -79,7 +82,10 @@ def build(network: Network, lattice: Lattice, rules: LayoutRules) -> Problem:
         mass=np.stack([out_start, in_start, tab_start.astype(np.int32), biased], axis=1),
         outs=outs,
         ins=source[into],
-        tab=np.array([_tab(tab, lattice) for tab in tabs], np.int32).reshape(-1, 5),
+        tab=np.array([_tab(tab, lattice) for tab in tabs], np.int32).reshape(-1, 3),
+        way=np.array([_ways(tab, len(lattice.column_x)) for tab in tabs], np.int32).reshape(
+            len(tabs), len(lattice.column_x), 4
+        ),
         slot=np.array(lattice.slots, np.int32),
         slot_at=slot_at,
         reach=np.array([max(rules.couplers[c.name], rules.hub_half) + half for c in couplings]),
@@ -105,13 +111,26 @@ def _rows(key: Ints, count: int) -> tuple[Ints, Ints]:
     return start, order
 
 
-def _tab(tab: TabTerminal, lattice: Lattice) -> tuple[int, int, int, int, int]:
+def _tab(tab: TabTerminal, lattice: Lattice) -> tuple[int, int, int]:
     if tab.vertical and tab.row is not None:
-        return tab.channel, tab.row, tab.row, tab.row, UP_OR_DOWN
+        return tab.row, tab.row, tab.row
     nearest = min(range(len(lattice.row_y)), key=lambda r: abs(lattice.row_y[r] - tab.y))
     rows = tab.rows or (nearest,)
-    kind = RIGHT_WALL if tab.outside > 0 else LEFT_WALL
-    return tab.channel, min(rows), max(rows), -1 if tab.row is None else tab.row, kind
+    return min(rows), max(rows), -1 if tab.row is None else tab.row
+
+
+def _ways(tab: TabTerminal, columns: int) -> list[tuple[int, int, int, int]]:
+    ways = []
+    for column in range(columns):
+        found = way(tab, column)
+        if found is None:
+            ways.append((-1, 0, abs(column - tab.channel), 0))
+        elif tab.vertical and found.channel == tab.channel:
+            ways.append((found.channel, found.first, found.last, BETWEEN))
+        else:
+            rightwards = tab.channel > found.channel if tab.vertical else tab.outside > 0
+            ways.append((found.channel, found.first, found.last, int(rightwards)))
+    return ways
 
 
 def _channels(lattice: Lattice, rules: LayoutRules) -> tuple[Floats, Ints]:

@@ -81,6 +81,8 @@ def assemble(
             names.append(name)
             out.trunks.append(Trunk(name, trunk.net, x, trunk.y_low, trunk.y_high))
         for item, k in zip(channel.items, found.plates, strict=True):
+            if item.role is Role.GUEST:
+                continue
             plate = rules.link_plates[k]
             if item.role is Role.BIAS:
                 sign = 1 if item.hubs[0][1] == 1 else -1

@@ -23,6 +23,10 @@ BEST_LIMIT = 0.4
 """CP-SAT's deterministic time for a first legal routing and for shortening its rungs."""
 
 
+LEAF_AND_TAB = ({Role.COUPLER, Role.TAB}, {Role.COUPLER, Role.STRAIGHT_TAB}, {Role.COUPLER, Role.GUEST})
+"""Pairs of one net that must not run into each other: only flexures do not move as their carrier does."""
+
+
 @dataclass(frozen=True, slots=True)
 class ChannelRoute:
     """x of every trunk (mm) and the plate index of every item, in the channel's order."""
@@ -45,8 +49,10 @@ class _Model:
             [self.model.new_bool_var(f"p{i}.{k}") for k in range(len(rules.link_plates))]
             for i in range(len(channel.items))
         ]
-        for row in self.plate:
+        for item, row in zip(channel.items, self.plate, strict=True):
             self.model.add_exactly_one(row)
+            if item.plate is not None:
+                self.model.add(row[item.plate] == 1)
         self.known: dict[tuple[str, str], Any] = {}
         self.edges = [self._edges(item) for item in channel.items]
         self._trunks()
@@ -114,7 +120,7 @@ class _Model:
         if set(a.hubs) & set(b.hubs):
             self._share(i, j, False, False)
         own = a.net == b.net and Role.BIAS not in (a.role, b.role)
-        if own and {a.role, b.role} != {Role.COUPLER, Role.TAB}:
+        if own and {a.role, b.role} not in LEAF_AND_TAB:
             return
         for box_a in self._boxes(i):
             for box_b in self._boxes(j):

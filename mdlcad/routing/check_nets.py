@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable
-from itertools import pairwise
 
 from mdlcad.mechanics.rules import LayoutRules
 from mdlcad.network.model import Network

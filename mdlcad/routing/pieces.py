@@ -12,14 +12,15 @@ from enum import StrEnum
 
 from mdlcad.mechanics.rules import LayoutRules
 from mdlcad.network.model import Network
-from mdlcad.placement.grid import RESOLUTION, TabTerminal, free_intervals, holding
+from mdlcad.placement.grid import RESOLUTION, TabTerminal, clearance, free_intervals, holding, way
 from mdlcad.placement.lattice import Lattice
 from mdlcad.placement.placement import PlacedMass, Placement
 from mdlcad.placement.placer import Sides
 
 
 class Role(StrEnum):
-    """What an item is: hub to trunk, trunk to target, hub to target, a bias leaf, trunk to port, hub to port."""
+    """What an item is: hub to trunk, trunk to target, hub to target, a bias leaf, trunk to port, hub to port,
+    a passing tab."""
 
     SOURCE = "source"
     COUPLER = "coupler"
@@ -27,6 +28,7 @@ class Role(StrEnum):
     BIAS = "bias"
     TAB = "tab"
     STRAIGHT_TAB = "straight tab"
+    GUEST = "guest"
 
 
 def units(length: float) -> int:
@@ -64,6 +66,7 @@ class Item:
         left, right: its reach in x; ``span`` replaces both for a tab in y, whose bend may lie on either side.
         trunk: index of the trunk whose pin it needs at that trunk's centre, or None.
         post: where its fixed post stands (counts), or None.
+        plate: index of the plate it must lie on (a tab that passes hub columns lies on one in several channels).
         rises: (x_low, x_high, y_low, y_high) of a second rectangle on the same plate: a tab's vertical part.
     """
 
@@ -78,6 +81,7 @@ class Item:
     trunk: int | None = None
     post: int | None = None
     bend: int | None = None
+    plate: int | None = None
     rises: tuple[int, int, float, float] | None = None
 
 
@@ -101,9 +105,9 @@ class _Connection:
 
 
 def channels(
-    network: Network, placement: Placement, lattice: Lattice, sides: Sides, rules: LayoutRules
+    network: Network, placement: Placement, lattice: Lattice, sides: Sides, rules: LayoutRules, turn: int
 ) -> tuple[Channel, ...]:
-    """The pieces of every channel, left to right."""
+    """The pieces of every channel, left to right; ``turn`` varies the plates of tabs that pass hub columns."""
     placed = {item.mass: item for item in placement.masses}
     result = tuple(Channel(index) for index in range(len(placement.column_x) + 1))
     wanted: dict[tuple[str, int], list[_Connection]] = {}
@@ -111,18 +115,29 @@ def channels(
         if coupling.name in sides.couplings:
             key = (coupling.source, sides.couplings[coupling.name])
             wanted.setdefault(key, []).append(_Connection(coupling.name, placed[coupling.target], None))
+    plates = _passing(lattice, placed, rules, turn)
     for tab in lattice.tabs:
-        side = tab.channel - placed[tab.mass].column
-        if side not in (0, 1):
-            result[tab.channel].trouble.append(f"port {tab.bit}: mass {tab.mass} is not beside the channel of its tab")
+        start = placed[tab.mass].column
+        found = way(tab, start)
+        if found is None:
+            result[tab.channel].trouble.append(
+                f"port {tab.bit}: a wall stands between its mass {tab.mass} and its place"
+            )
             continue
-        wanted.setdefault((tab.mass, side), []).append(_Connection(None, None, tab))
+        for blocker in placement.masses:
+            if found.first <= blocker.column <= found.last and blocker.row in _passed_rows(tab):
+                result[found.channel].trouble.append(f"port {tab.bit}: unit {blocker.mass} is in the way of its tab")
+        wanted.setdefault((tab.mass, found.channel - start), []).append(_Connection(None, None, tab))
+        for index in range(found.first, found.last + 1):
+            # the tab comes over hub column ``index``, into the channel on the far side
+            other = index + 1 if found.channel <= found.first else index
+            result[other].items.append(_guest(tab, lattice.column_x[index], plates[tab.bit], rules))
     for mass in network.masses:
         for side in (0, 1):
             ends = wanted.get((mass.name, side), [])
             if ends:
                 source = placed[mass.name]
-                _net(result[source.column + side], source, side, ends, lattice, rules)
+                _net(result[source.column + side], source, side, ends, lattice, rules, plates)
         if mass.name in sides.biases:
             _bias(result[placed[mass.name].column + sides.biases[mass.name]], placed[mass.name], sides, lattice, rules)
     return result
@@ -154,14 +169,20 @@ def _bias(channel: Channel, hub: PlacedMass, sides: Sides, lattice: Lattice, rul
 
 
 def _net(
-    channel: Channel, source: PlacedMass, side: int, ends: list[_Connection], lattice: Lattice, rules: LayoutRules
+    channel: Channel,
+    source: PlacedMass,
+    side: int,
+    ends: list[_Connection],
+    lattice: Lattice,
+    rules: LayoutRules,
+    plates: dict[str, int],
 ) -> None:
     only = ends[0]
     if len(ends) == 1:
         if only.target is not None and only.target.row == source.row and only.target.column != source.column:
             return _straight(channel, source, side, only.coupling or "", only.target, lattice, rules)
-        if only.tab is not None and not only.tab.vertical and only.tab.row == source.row:
-            return _straight_tab(channel, source, side, only.tab, rules)
+        if only.tab is not None and only.tab.row == source.row:
+            return _straight_tab(channel, source, side, only.tab, plates, rules)
     heights = [source.y, *(end.target.y if end.target else end.tab.y if end.tab else 0.0 for end in ends)]
     domain = _domain(channel.index, source, side, ends, min(heights), max(heights), lattice, rules)
     if not domain:
@@ -179,7 +200,7 @@ def _net(
             item = _hung(Role.COUPLER, source, end.coupling, end.target, hub_side, trunk, post, rules)
             channel.items.append(item)
         elif end.tab is not None:
-            channel.items.append(_tab(source, end.tab, trunk, rules))
+            channel.items.append(_tab(source, end.tab, trunk, plates, rules))
     return None
 
 
@@ -235,9 +256,79 @@ def _straight(
     )
 
 
-def _straight_tab(channel: Channel, source: PlacedMass, side: int, tab: TabTerminal, rules: LayoutRules) -> None:
-    half = rules.hub_height / 2
-    low, high = sorted((source.x, tab.path[1][0]))
+def _passed_rows(tab: TabTerminal) -> tuple[int, ...]:
+    """Rows whose units would be in the way of the tab's rung."""
+    return tab.rows if not tab.vertical or tab.row is None else (tab.row,)
+
+
+def _passing(lattice: Lattice, placed: dict[str, PlacedMass], rules: LayoutRules, turn: int) -> dict[str, int]:
+    """A plate for every tab that passes hub columns: no two that come near on the way share one.
+
+    The longest go highest, so that a shorter one's pin, which starts nearer to the wall, stays under it.
+    """
+    spans = []
+    for tab in lattice.tabs:
+        found = way(tab, placed[tab.mass].column)
+        if found is not None and found.first <= found.last:
+            ends = sorted((placed[tab.mass].x, tab.x))
+            spans.append((ends[0] - ends[1], tab.bit, tab, ends))
+    spans.sort(key=lambda item: item[:2])
+    count = len(rules.link_plates)
+    plates: dict[str, int] = {}
+    taken: list[tuple[TabTerminal, list[float], int]] = []
+    for _, bit, tab, ends in spans:
+        near = {
+            plate
+            for other, reach, plate in taken
+            if abs(other.y - tab.y) < clearance(rules.bar_width, rules.bar_width, rules)
+            and min(reach[1], ends[1]) > max(reach[0], ends[0]) - rules.column_pitch
+        }
+        choices = [(count - 1 - k + turn) % count for k in range(count)]
+        plates[bit] = next((plate for plate in choices if plate not in near), choices[0])
+        taken.append((tab, ends, plates[bit]))
+    return plates
+
+
+def _rise(tab: TabTerminal, rules: LayoutRules) -> tuple[int, int, float, float] | None:
+    """The vertical part of a tab in y."""
+    if not tab.vertical:
+        return None
+    half, bar, bend = rules.bar_width / 2, units(rules.bar_width / 2), round(tab.x / RESOLUTION)
+    tip = tab.path[-1][1]
+    return bend - bar, bend + bar, min(tab.y - half, tip), max(tab.y + half, tip)
+
+
+def _outer(tab: TabTerminal, rules: LayoutRules) -> float:
+    """The x that a tab's bar reaches at its far end: the tip, or the far edge of the bend."""
+    if not tab.vertical:
+        return tab.path[1][0]
+    return tab.x
+
+
+def _guest(tab: TabTerminal, hub_x: float, plate: int, rules: LayoutRules) -> Item:
+    """The part of a tab that lies in a channel which its net does not use: from a hub column on."""
+    half, bar = rules.bar_width / 2, rules.bar_width / 2 if tab.vertical else 0.0
+    low, high = sorted((hub_x, _outer(tab, rules)))
+    return Item(
+        Role.GUEST,
+        tab.mass,
+        tab.bit,
+        (),
+        tab.y - half,
+        tab.y + half,
+        Edge(math.floor((low - bar) / RESOLUTION + 1e-6)),
+        Edge(units(high + bar)),
+        plate=plate,
+        rises=_rise(tab, rules),
+    )
+
+
+def _straight_tab(
+    channel: Channel, source: PlacedMass, side: int, tab: TabTerminal, plates: dict[str, int], rules: LayoutRules
+) -> None:
+    half, bar = rules.hub_height / 2, rules.bar_width / 2 if tab.vertical else 0.0
+    sign = 1 if side == 1 else -1
+    low, high = sorted((source.x, _outer(tab, rules) + sign * bar))
     channel.items.append(
         Item(
             Role.STRAIGHT_TAB,
@@ -248,36 +339,33 @@ def _straight_tab(channel: Channel, source: PlacedMass, side: int, tab: TabTermi
             source.y + half,
             Edge(math.floor(low / RESOLUTION + 1e-6)),
             Edge(units(high)),
+            plate=plates.get(tab.bit),
+            rises=_rise(tab, rules),
         )
     )
 
 
-def _tab(source: PlacedMass, tab: TabTerminal, trunk: int, rules: LayoutRules) -> Item:
+def _tab(source: PlacedMass, tab: TabTerminal, trunk: int, plates: dict[str, int], rules: LayoutRules) -> Item:
     half, bar = rules.bar_width / 2, units(rules.bar_width / 2)
-    low, high = tab.y - half, tab.y + half
-    if tab.vertical:
-        bend = round(tab.x / RESOLUTION)
-        tip = tab.path[-1][1]
-        rises = (bend - bar, bend + bar, min(low, tip), max(high, tip))
-        return Item(
-            Role.TAB,
-            source.mass,
-            tab.bit,
-            (),
-            low,
-            high,
-            Edge(-bar, trunk),
-            Edge(bar, trunk),
-            trunk=trunk,
-            bend=bend,
-            rises=rises,
-        )
-    wall = tab.path[1][0]
-    if tab.outside > 0:
-        left, right = Edge(-bar, trunk), Edge(units(wall))
-    else:
-        left, right = Edge(math.floor(wall / RESOLUTION)), Edge(bar, trunk)
-    return Item(Role.TAB, source.mass, tab.bit, (), low, high, left, right, trunk=trunk)
+    bend = round(tab.x / RESOLUTION) if tab.vertical else None
+    left, right = Edge(-bar, trunk), Edge(bar, trunk)
+    if not tab.vertical:
+        left = left if tab.outside > 0 else Edge(math.floor(tab.path[1][0] / RESOLUTION))
+        right = Edge(units(tab.path[1][0])) if tab.outside > 0 else right
+    return Item(
+        Role.TAB,
+        source.mass,
+        tab.bit,
+        (),
+        tab.y - half,
+        tab.y + half,
+        left,
+        right,
+        trunk=trunk,
+        bend=bend,
+        plate=plates.get(tab.bit),
+        rises=_rise(tab, rules),
+    )
 
 
 def _domain(

@@ -48,7 +48,7 @@ def route(network: Network, placement: Placement, rules: LayoutRules, seed: int)
     reason = ""
     for attempt in range(SIDE_TRIES):
         sides = choose_sides(network, placement, lattice, rules, seed + attempt)
-        work = channels(network, placement, lattice, sides, rules)
+        work = channels(network, placement, lattice, sides, rules, attempt)
         routes: list[ChannelRoute] = []
         for channel in work:
             found = solve(channel, rules, seed)
