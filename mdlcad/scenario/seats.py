@@ -103,7 +103,6 @@ def free_seats(device: Device, network: Network) -> Seats:
         k=0.75 * float(np.sqrt(outline.area / n)),
         iterations=300 if n < 300 else 40,
         seed=1,
-        method="force",
     )
     free = [mass.name for mass in network.masses if mass.name not in pinned]
     slots = _lattice(outline.buffer(-0.7 * inset), list(pinned.values()), len(free))

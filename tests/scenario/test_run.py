@@ -97,7 +97,7 @@ def test_a_wrong_expectation_fails(light: Path, tmp_path: Path) -> None:
 
 
 def test_a_broken_network_fails(light: Path, tmp_path: Path) -> None:
-    """Every coupling in turn that a sensor pushes: with the wrong sign, the scenario without expectations tells."""
+    """The sensor pushes the wrong way: even a scenario without expectations tells."""
     network = network_of(light)
     sensor = network.sensors[0].mass
     broken = [

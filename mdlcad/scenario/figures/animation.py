@@ -153,8 +153,8 @@ def _network(axes: Axes, network: Network, seats: Seats) -> PathCollection:
     axes.set_aspect("equal")
     bare(axes)
     outline(axes, seats)
-    couplings(axes, network, seats, arrows=False)
     area = float(np.clip(9000.0 / len(points), 6.0, 170.0))
+    couplings(axes, network, seats, area**0.5, arrows=False)
     dots: PathCollection = axes.scatter(
         points[:, 0],
         points[:, 1],

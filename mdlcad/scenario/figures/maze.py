@@ -6,6 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.colors import LinearSegmentedColormap
+from matplotlib.patches import Rectangle
 
 from mdlcad.scenario.figures.page import FAINT, GOOD, INK, ONE, bare, new_figure, png
 from mdlcad.scenario.world import Cell, Maze
@@ -13,6 +14,7 @@ from mdlcad.scenario.world import Cell, Maze
 # the way is drawn beside the middle of a corridor, so that there and back again are two lines
 _ASIDE = 0.16
 _EVERY = 5
+_WALL = "#565b66"
 
 _TIME = LinearSegmentedColormap.from_list("time", ["#3b6ea8", "#7a5ba8", "#d9822b"])
 
@@ -23,7 +25,10 @@ def draw_map(axes: Axes, maze: Maze) -> None:
     for row, text in enumerate(maze.rows):
         for column, mark in enumerate(text):
             if mark == "#":
-                axes.fill(*_square((row, column), 0.5), color="#565b66", lw=0)
+                axes.fill(*_square((row, column), 0.5), color=_WALL, lw=0)
+    # beyond the map all is wall
+    edge = Rectangle((-0.5, -0.5), columns, rows, fc="none", ec=_WALL, lw=2.5)
+    axes.add_patch(edge)
     start = next((row, text.index("S")) for row, text in enumerate(maze.rows) if "S" in text)
     for cell, colour, word in ((start, FAINT, "start"), (maze.exit, GOOD, "exit")):
         axes.fill(*_square(cell, 0.5), color=colour, alpha=0.35, lw=0)

@@ -19,9 +19,9 @@ def picture(network: Network, seats: Seats) -> bytes:
     """PNG of the network."""
     figure, axes = framed(seats, _INCHES)
     outline(axes, seats)
-    couplings(axes, network, seats)
     # smaller masses in larger networks, down to where they are dots
     side = float(np.clip(150.0 / np.sqrt(len(network.masses)), 4.0, 19.0))
+    couplings(axes, network, seats, side)
     ports = {port.mass for port in (*network.sensors, *network.actuators)}
     registers = {register.mass for register in network.registers}
     for mass in network.masses:
@@ -78,8 +78,8 @@ def outline(axes: Axes, seats: Seats) -> None:
     axes.fill(*zip(*seats.boundary, strict=True), fc=PAPER, ec=FAINT, lw=1.5, zorder=0)
 
 
-def couplings(axes: Axes, network: Network, seats: Seats, *, arrows: bool = True) -> None:
-    """Couplings as arcs from source to target, negative ones red, latches dashed."""
+def couplings(axes: Axes, network: Network, seats: Seats, side: float, *, arrows: bool = True) -> None:
+    """Couplings as arcs between masses ``side`` points wide, source to target; negative ones red, latches dashed."""
     strongest = max((abs(coupling.strength) for coupling in network.couplings), default=1.0)
     thin = 1.0 if len(network.couplings) < 300 else 0.5
     for coupling in network.couplings:
@@ -91,9 +91,9 @@ def couplings(axes: Axes, network: Network, seats: Seats, *, arrows: bool = True
                 # bent, so that couplings along one column do not cover each other
                 connectionstyle="arc3,rad=0.14",
                 arrowstyle="-|>" if arrows else "-",
-                mutation_scale=7,
-                shrinkA=5,
-                shrinkB=7 if arrows else 5,
+                mutation_scale=min(8.0, 1.0 + 0.5 * side),
+                shrinkA=0.25 * side,
+                shrinkB=(0.48 if arrows else 0.25) * side,
                 color=NEGATIVE if red else POSITIVE,
                 lw=thin * (0.5 + 1.1 * abs(coupling.strength) / strongest),
                 ls="--" if coupling.kind is CouplingKind.LATCH else "-",
