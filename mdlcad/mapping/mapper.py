@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from mdlcad.mapping.build import build_network, invert, with_ring
 from mdlcad.mapping.candidates import find_candidates
@@ -20,22 +20,32 @@ from mdlcad.mapping.subject import FALSE, TRUE, Subject
 from mdlcad.network.model import Network
 from mdlcad.synthesis.netlist import Netlist
 
-_DETERMINISTIC_TIME = 1.0
 _SEED = 1
-# masses made by the first search; the second works for about as long
-_EFFORT = 150_000
 
 
-def map_netlist(netlist: Netlist, library: Library) -> Network:
+@dataclass(frozen=True, slots=True)
+class Effort:
+    """How long to look for a small network; in work done, not in seconds.
+
+    Attributes:
+        masses_made: by all passes of the first, annealing search.
+        deterministic_time: of CP-SAT in the second, exact search; none if 0.
+    """
+
+    masses_made: int = 150_000
+    deterministic_time: float = 1.0
+
+
+def map_netlist(netlist: Netlist, library: Library, effort: Effort = Effort()) -> Network:
     """Map ``netlist`` to masses and springs of ``library``.
 
-    The result is a function of the two arguments alone.
+    The result is a function of the arguments alone.
 
     Raises:
         UsageError: the device needs a fan-out that the library does not allow.
     """
     subject, nets = _make_subject(netlist)
-    plan = _make_plan(netlist, library, subject, nets)
+    plan = _make_plan(netlist, library, subject, nets, effort)
     masses, tick = with_ring(plan)
     masses = relieve(masses, library.gates.load_limit, library.gates.echo_limit)
     names, upside_down = name_masses(replace(plan, masses=masses), subject, netlist, nets)
@@ -55,7 +65,7 @@ def _make_subject(netlist: Netlist) -> tuple[Subject, dict[str, int]]:
     return subject, nets
 
 
-def _make_plan(netlist: Netlist, library: Library, subject: Subject, nets: dict[str, int]) -> Plan:
+def _make_plan(netlist: Netlist, library: Library, subject: Subject, nets: dict[str, int], effort: Effort) -> Plan:
     wanted = []
     for register in netlist.registers:
         output, data = nets[register.bit], nets[register.data]
@@ -79,7 +89,9 @@ def _make_plan(netlist: Netlist, library: Library, subject: Subject, nets: dict[
         exact_choices(subject, candidates, item) if subject.exact else structural_choices(item) for item in wanted
     ]
     graph = OptionGraph(subject, candidates, choices, outputs, library.gates)
-    start = search(graph, plain_taste(graph, [item.following for item in wanted]), _EFFORT, _SEED)
-    found = best_cover(graph, start, _DETERMINISTIC_TIME, _SEED)
+    start = search(graph, plain_taste(graph, [item.following for item in wanted]), effort.masses_made, _SEED)
+    if not effort.deterministic_time:
+        return make_plan(graph, start)
+    found = best_cover(graph, start, effort.deterministic_time, _SEED)
     # the exact search knows nothing of twins
     return make_plan(graph, min(found, start, key=lambda selection: selection_cost(graph, selection)))

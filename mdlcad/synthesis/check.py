@@ -22,12 +22,14 @@ def check_design(device: Device, run: YosysRun) -> None:
 
     Raises:
         InputError: several top modules; ports that are not the device's sensors and actuators; a second clock, the
-            falling edge, an asynchronous reset or a latch.
+            falling edge, an asynchronous reset or a latch; or what else Yosys found.
     """
     module = top_module(run.raw)
     found = _modules(device, run)
     found += _ports(device, module)
     found += _storage(device, module)
+    # our own words first: Yosys stumbles over the same things later, in words about its cells
+    found = found or list(run.trouble)
     if found:
         raise InputError(found)
 

@@ -23,13 +23,13 @@ ELABORATE = (
     "check",
     "write_json raw.json",
 )
-# Unknowns are 0, everywhere and before any optimiser may choose otherwise. No synchronous-reset cells: a reset is
+# Memories first, for their cells have pins that must stay unknown. Unknowns are 0, everywhere and before any optimiser may choose otherwise. No synchronous-reset cells: a reset is
 # logic here. Enables are kept, for a register with an enable needs no multiplexer.
 REGISTERS = (
+    "memory -nordff",
     "setundef -zero -undriven -init",
     "opt_expr",
     "opt_clean",
-    "memory",
     "opt -nosdff",
     "setundef -zero -undriven -init",
     "design -save registers",

@@ -33,12 +33,19 @@ _FATAL_WARNINGS = ("is implicitly declared", "out of bounds", "Range select")
 
 @dataclass(frozen=True, slots=True)
 class YosysRun:
-    """The JSON designs of one run (see ``worker``), and the modules that were left out as unused."""
+    """One run, as far as it came.
+
+    Attributes:
+        raw, reference, netlist: the JSON designs (see ``worker``); the last two are empty if there was trouble.
+        unused_modules: modules that were left out as unused.
+        trouble: what Yosys had to say against the program.
+    """
 
     raw: dict[str, Any]
     reference: dict[str, Any]
     netlist: dict[str, Any]
     unused_modules: tuple[str, ...]
+    trouble: tuple[Diagnostic, ...]
 
 
 def run_yosys(device: Device) -> YosysRun:
@@ -47,7 +54,7 @@ def run_yosys(device: Device) -> YosysRun:
     The text is the user's: it cannot include or open files, and Yosys works in an empty temporary folder.
 
     Raises:
-        InputError: the Verilog is wrong, at its line and column in the program's file.
+        InputError: the Verilog is so wrong that there is no design to check, at its line and column in the file.
     """
     _refuse_files(device)
     worker = Path(__file__).with_name("worker.py")
@@ -78,10 +85,19 @@ def run_yosys(device: Device) -> YosysRun:
                 ]
             ) from None
         found = _diagnostics(device, done.stdout + "\n" + done.stderr, done.returncode)
-        if found:
+        path = Path(folder)
+        raw = path / "raw.json"
+        if not raw.exists():
             raise InputError(found)
-        designs = [json.loads((Path(folder) / f"{name}.json").read_bytes()) for name in ("raw", "reference", "netlist")]
-    return YosysRun(designs[0], designs[1], designs[2], tuple(sorted(_UNUSED.findall(done.stdout))))
+        names = () if found else ("reference", "netlist")
+        designs = {name: json.loads((path / f"{name}.json").read_bytes()) for name in names}
+        return YosysRun(
+            json.loads(raw.read_bytes()),
+            designs.get("reference", {}),
+            designs.get("netlist", {}),
+            tuple(sorted(_UNUSED.findall(done.stdout))),
+            tuple(found),
+        )
 
 
 def locate(device: Device, pattern: str, message: str, hint: str = "") -> Diagnostic:
@@ -138,7 +154,8 @@ def _diagnostics(device: Device, log: str, code: int) -> list[Diagnostic]:
     for text in _CHECK.findall(log):
         found.append(_from_check(device, text))
     if code and not found:
-        texts = _ERROR.findall(log) or ["the behaviour could not be elaborated"]
+        texts = [text for text in _ERROR.findall(log) if not text.startswith("Assert")]
+        texts = texts or ["the behaviour uses something that cannot be turned into gates"]
         names = re.search(r"cell `\\?([^']*)'", texts[0]) or re.search(r"`\\?([^']*)'", texts[0])
         pattern = rf"\b{re.escape(names[1])}\b" if names else r"\bmodule\b"
         found.append(locate(device, pattern, _plain(texts[0])))
