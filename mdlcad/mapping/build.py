@@ -72,7 +72,10 @@ def build_network(
         for source, weight in sorted(zip(mass.sources, mass.function.weights, strict=True), key=lambda i: names[i[0]])
     ]
     polarity = choose_polarity(
-        [names[mass.key] for mass in ordered], [(a, b, weight < 0) for a, b, weight in springs], [*sensors, *ports]
+        [names[mass.key] for mass in ordered],
+        [(a, b, weight < 0) for a, b, weight in springs],
+        [*sensors, *ports],
+        [names[mass.key] for mass in ordered if mass.function.bias],
     )
     couplings = tuple(_coupling(library, a, b, weight * polarity[a] * polarity[b]) for a, b, weight in springs)
     load: dict[str, float] = {}
