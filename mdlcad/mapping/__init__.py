@@ -1,6 +1,6 @@
-"""Netlist to a network of threshold-gate masses, by a cell library."""
+"""Netlist to a network of masses and springs, by a cell library of either kind."""
 
-from mdlcad.mapping.library import Library, load_library
-from mdlcad.mapping.mapper import Effort, map_netlist
+from mdlcad.mapping.dispatch import Library, liberty_view, load_library, map_netlist
+from mdlcad.mapping.mapper import Effort
 
-__all__ = ["Effort", "Library", "load_library", "map_netlist"]
+__all__ = ["Effort", "Library", "liberty_view", "load_library", "map_netlist"]

@@ -23,17 +23,17 @@ def load_library(name_or_path: str) -> Library:
     return parametron.load_library(name_or_path)
 
 
-def map_netlist(netlist: Netlist, library: Library, effort: mapper.Effort = mapper.Effort.FULL) -> Network:
+def map_netlist(netlist: Netlist, library: Library, effort: mapper.Effort | None = None) -> Network:
     """Map ``netlist`` to masses and springs of ``library``.
 
-    The result is a function of the arguments alone. ``effort`` is the parametron mapper's; the two-phase mapper has one.
+    The result is a function of the arguments alone; ``effort`` is for the parametron mapper alone.
 
     Raises:
         UsageError: the device needs more than the library allows; says what.
     """
     if isinstance(library, TwoPhaseLibrary):
         return map_two_phase(netlist, library)
-    return mapper.map_netlist(netlist, library, effort)
+    return mapper.map_netlist(netlist, library, effort or mapper.Effort())
 
 
 def liberty_view(library: Library) -> str | None:
