@@ -113,7 +113,7 @@ def build_network(
         tick=None if tick is None else names[tick],
         cycles_per_tick=plan.cycles,
     )
-    return _power_up(network, library, plan.tick_cycle)
+    return _power_up(network, library, plan.tick_cycle, _held(netlist, masses, names))
 
 
 def discrete(network: Network, library: Library) -> DiscreteNetwork:
@@ -142,15 +142,25 @@ def _place(mass: PlannedMass, names: dict[Key, str], netlist: Netlist) -> tuple[
     return (1, 0, name)
 
 
-def _power_up(network: Network, library: Library, tick_cycle: int) -> Network:
+def _held(netlist: Netlist, masses: tuple[PlannedMass, ...], names: dict[Key, str]) -> dict[str, bool]:
+    """The initial logic value of every mass that takes a register's value at a tick: its store, the store's twins, and
+    actuators that take it beside the store."""
+    held = {}
+    for mass in masses:
+        for source, weight in zip(mass.sources, mass.function.weights, strict=True):
+            if mass.key.role in (Role.STORE, Role.PORT) and source.role is Role.HOLD:
+                held[names[mass.key]] = netlist.registers[source.of[0]].initial != (weight < 0)
+    return held
+
+
+def _power_up(network: Network, library: Library, tick_cycle: int, registers: dict[str, bool]) -> Network:
     """Displacements at t = 0, when the masses of phase 2 hold their values and all others are about to be set anew.
 
-    The registers hold their initial values, the logic has settled to them with all sensors at 0, and the ring is
+    The ``registers`` hold their initial values, the logic has settled to them with all sensors at 0, and the ring is
     where the first tick falls into ``tick_cycle``.
     """
     logic = discrete(network, library)
     upright = np.array([mass.polarity for mass in network.masses])
-    registers = {register.mass: register.initial for register in network.registers}
     state: Signs = np.where(upright > 0, -1, 1).astype(np.int8)[:, None]
 
     def hold_registers(current: Signs) -> None:

@@ -46,8 +46,11 @@ class Pass:
         self._graph = graph
         self._flow = _area_flow(graph)
 
-    def select(self, taste: Taste) -> Selection | None:
-        """The selection of that taste, or None if it leads into a loop of logic."""
+    def select(self, taste: Taste, *, falling: bool = False) -> Selection | None:
+        """The selection of that taste, or None if it leads into a loop of logic.
+
+        ``falling``: make every node from older ones alone, by which there can be no loop.
+        """
         graph = self._graph
         selection = Selection(
             sets=[choice for choice, _ in taste.registers],
@@ -61,7 +64,7 @@ class Pass:
         roots = [*graph.required, *(carrier.key for carrier in selection.carriers)]
         ranks = taste.order or (0.0,) * len(roots)
         for _, root in sorted(zip(ranks, roots, strict=True)):
-            if not self._make(root, selection, guards, taste.favour):
+            if not self._make(root, selection, guards, taste.favour, falling):
                 return None
         for keys in graph.sensors:
             if not any(key in selection.chosen for key in keys):
@@ -69,20 +72,24 @@ class Pass:
         time_selection(graph, selection)
         return selection
 
-    def _make(self, root: Key, selection: Selection, guards: set[Guard], favour: dict[int, float]) -> bool:
+    def _make(
+        self, root: Key, selection: Selection, guards: set[Guard], favour: dict[int, float], falling: bool
+    ) -> bool:
         stack = [root]
         while stack:
             key = stack.pop()
             if key.role is Role.TICK or key in selection.chosen:
                 continue
-            number = self._pick(key, selection, guards, favour)
+            number = self._pick(key, selection, guards, favour, falling)
             if number is None:
                 return False
             selection.chosen[key] = number
             stack += self._graph.options[key][number].sources
         return True
 
-    def _pick(self, key: Key, selection: Selection, guards: set[Guard], favour: dict[int, float]) -> int | None:
+    def _pick(
+        self, key: Key, selection: Selection, guards: set[Guard], favour: dict[int, float], falling: bool
+    ) -> int | None:
         options = self._graph.options[key]
         if key.role is Role.LOGIC:
             if any(Key(Role.LOGIC, key.of, phase) in selection.chosen for phase in range(PHASES)):
@@ -95,7 +102,12 @@ class Pass:
             if (option.guard is None or option.guard in guards) and not (key.role is Role.LOGIC and number == 0)
         ]
         for _, number in sorted(priced):
-            if key.role is not Role.LOGIC or not self._loops(key.of, options[number], selection):
+            if key.role is not Role.LOGIC:
+                return number
+            if falling:
+                if all(s.of < key.of for s in options[number].sources if s.role is Role.LOGIC):
+                    return number
+            elif not self._loops(key.of, options[number], selection):
                 return number
         return None
 
@@ -146,31 +158,27 @@ def search(graph: OptionGraph, start: Taste, effort: int, seed: int) -> Selectio
 
     Args:
         effort: masses made in all; the number of passes follows from the size of the device.
-
-    Raises:
-        ValueError: the start itself leads into a loop.
     """
     make = Pass(graph)
-    best = make.select(start)
+    best = make.select(start, falling=True)
     if best is None:
-        raise ValueError("the plain cover has a loop")
+        raise ValueError("a node cannot be made from the ones before it")
     rounds = effort // (_RESTARTS * max(1, len(best.chosen)))
+    plain = best
     for restart in range(_RESTARTS):
-        found = _anneal(graph, make, start, rounds, Random(seed * _RESTARTS + restart))
-        if found is not None and selection_cost(graph, found) < selection_cost(graph, best):
+        found = _anneal(graph, make, start, plain, rounds, Random(seed * _RESTARTS + restart))
+        if selection_cost(graph, found) < selection_cost(graph, best):
             best = found
     return best
 
 
-def _anneal(graph: OptionGraph, make: Pass, taste: Taste, rounds: int, random: Random) -> Selection | None:
-    """The best of ``rounds`` passes, each with something changed in the taste; None if none was better."""
+def _anneal(graph: OptionGraph, make: Pass, taste: Taste, best: Selection, rounds: int, random: Random) -> Selection:
+    """The best of ``best`` and ``rounds`` passes, each with something changed in the taste."""
     nodes = sorted({key.of[0] for key in graph.options if key.role is Role.LOGIC})
     roots = len(graph.required) + len(graph.carriers)
-    first = make.select(taste)
-    if first is None or not nodes:
-        return first
-    cost = best_cost = selection_cost(graph, first)
-    best = None
+    if not nodes:
+        return best
+    cost = best_cost = selection_cost(graph, best)
     for turn in range(rounds):
         changed = _change(graph, taste, nodes, roots, random)
         selection = make.select(changed)

@@ -60,11 +60,11 @@ class Wanted:
 
 def structural_choices(wanted: Wanted) -> RegisterChoices:
     """The two ways that need no truth tables: all logic in the set term, or loading under the enable."""
-    sets = [SetChoice((Term(wanted.following),))]
+    sets = [_set_choice(wanted.following)]
     releases = [TRUE]
     fits = [(0,)]
     if wanted.enable is not None:
-        sets.append(SetChoice((Term(wanted.data, wanted.enable),)))
+        sets.append(_set_choice(wanted.data, wanted.enable))
         releases.append(wanted.enable)
         fits.append((1,))
     return RegisterChoices(wanted.register.bit, wanted.output, tuple(sets), tuple(releases), tuple(fits))
@@ -89,12 +89,12 @@ def exact_choices(subject: Subject, candidates: list[tuple[Candidate, ...]], wan
 
     options: list[tuple[SetChoice, int]] = []
     for literal in setting:
-        options.append((SetChoice(() if literal == FALSE else (Term(literal),)), tables[literal]))
+        options.append((_set_choice(literal), tables[literal]))
         for a, b in _halves(candidates, literal):
             options.append((SetChoice((Term(a), Term(b))), tables[literal]))
     if wanted.enable is not None:
         made = subject.table(wanted.enable) & subject.table(wanted.data)
-        options.append((SetChoice((Term(wanted.data, wanted.enable),)), made))
+        options.append((_set_choice(wanted.data, wanted.enable), made))
 
     sets, fits = [], []
     for option, table in options:
@@ -108,6 +108,11 @@ def exact_choices(subject: Subject, candidates: list[tuple[Candidate, ...]], wan
             sets.append(option)
             fits.append(fit)
     return RegisterChoices(wanted.register.bit, wanted.output, tuple(sets), tuple(releasing), tuple(fits))
+
+
+def _set_choice(literal: int, load: int | None = None) -> SetChoice:
+    """Set by one term; what is never set needs none."""
+    return SetChoice(() if literal == FALSE else (Term(literal, load),))
 
 
 def _nearest(literals: list[int], always: int) -> list[int]:

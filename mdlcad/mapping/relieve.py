@@ -1,10 +1,11 @@
 """Twins for masses whose targets pull back too hard.
 
 A passive spring works both ways. While mass i decides, its targets are reset and soft but not rigid: each is pulled
-aside by its own targets, which still hold their old values, and pushes i. The push grows with the *echo* of i, the sum
-over its targets t of (weight of i -> t) times (total weight of the couplings from t on), and an echo of about eight
-outweighs an input of weight one. So no mass may echo more than the library allows. A twin computes the same from the
-same sources and takes over some of the targets. Sensors are held by their drive and need no relief.
+aside by its own targets, which still hold their old values, and by its other sources, which decide together with i;
+and it pushes i. The push grows with the *echo* of i, the sum over its targets t of (weight of i -> t) times (total
+weight of all other couplings of t), and too much of it outweighs an input of weight one. So no mass may echo more than
+the library allows. A twin computes the same from the same sources and takes over some of the targets. Sensors are held
+by their drive and need no relief.
 """
 
 from __future__ import annotations
@@ -29,8 +30,12 @@ class _Web:
     def load(self, key: Key) -> int:
         return sum(self.targets[key].values())
 
-    def echo(self, key: Key) -> int:
-        return sum(weight * self.load(target) for target, weight in self.targets[key].items())
+    def echoes(self, key: Key) -> dict[Key, int]:
+        """What each target of ``key`` adds to its echo."""
+        return {
+            target: weight * (self.load(target) + self.masses[target].function.inputs - weight)
+            for target, weight in self.targets[key].items()
+        }
 
     def split(self, key: Key, price: dict[Key, int]) -> None:
         """Add a twin of ``key`` and give it targets of about half the price."""
@@ -77,12 +82,12 @@ def _worst(web: _Web, load_limit: int, echo_limit: int) -> tuple[Key, dict[Key, 
         if len(targets) > 1 and web.load(key) > load_limit:
             return key, dict(targets)
     for key in sorted(web.masses):
-        if key.role is Role.SENSOR or web.echo(key) <= echo_limit:
+        echoes = {} if key.role is Role.SENSOR else web.echoes(key)
+        if sum(echoes.values()) <= echo_limit:
             continue
-        targets = web.targets[key]
-        if len(targets) > 1:
-            return key, {target: weight * web.load(target) for target, weight in targets.items()}
-        (target,) = targets
+        if len(echoes) > 1:
+            return key, echoes
+        (target,) = echoes
         if len(web.targets[target]) > 1:
             return target, dict(web.targets[target])
     return None

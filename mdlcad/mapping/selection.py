@@ -127,17 +127,19 @@ def selection_cost(graph: OptionGraph, selection: Selection) -> int:
     and cycles."""
     cost = CYCLE_COST * selection.cycles + MASS_COST * len(selection.chosen)
     targets: dict[Key, list[tuple[Key, int]]] = {}
+    inputs: dict[Key, int] = {}
     for key in selection.chosen:
         option = selection.option(graph, key)
         for source, weight in zip(option.sources, option.function.weights, strict=True):
             targets.setdefault(source, []).append((key, abs(weight)))
-            cost += COUPLING_COST * abs(weight)
+        inputs[key] = option.function.inputs
+        cost += COUPLING_COST * inputs[key]
     if graph.registers:
         cost += MASS_COST * plan_ring(selection.cycles).masses(TICK0 in targets and TICK2 in targets)
     load = {key: sum(weight for _, weight in found) for key, found in targets.items()}
     for key, found in targets.items():
         if key.role is Role.LOGIC and not selection.option(graph, key).sources:
             continue  # a sensor
-        echo = sum(weight * load.get(target, 0) for target, weight in found)
+        echo = sum(weight * (load.get(target, 0) + inputs[target] - weight) for target, weight in found)
         cost += MASS_COST * max((load[key] - 1) // graph.load_limit, (echo - 1) // graph.echo_limit, 0)
     return cost

@@ -21,9 +21,14 @@ class Threshold:
     bias: int
 
     @property
+    def inputs(self) -> int:
+        """Sum of the absolute weights."""
+        return sum(abs(w) for w in self.weights)
+
+    @property
     def total(self) -> int:
         """Sum of the absolute weights and bias: how much force stands behind a margin of one."""
-        return sum(abs(w) for w in self.weights) + abs(self.bias)
+        return self.inputs + abs(self.bias)
 
     def negated(self) -> Threshold:
         """The function with its output inverted."""
