@@ -9,12 +9,11 @@ from mdlcad.artefact import write_atomic
 from mdlcad.export.drawing import dxf_plate, svg_plate
 from mdlcad.export.mesh import stl_plate, threemf_device
 from mdlcad.export.step import step_assembly
-from mdlcad.parts.plates import plates_of
 from mdlcad.parts.body import Body
+from mdlcad.parts.plates import plates_of
 
-def write_files(
-    design: str, bodies: Sequence[Body], folder: Path, progress: Callable[[str], None]
-) -> tuple[str, ...]:
+
+def write_files(design: str, bodies: Sequence[Body], folder: Path, progress: Callable[[str], None]) -> tuple[str, ...]:
     """Write NAME.step, NAME.3mf and plates/PLATE.{step,stl,dxf,svg}; the paths written, relative to ``folder``.
 
     Raises:

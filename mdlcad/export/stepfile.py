@@ -9,36 +9,50 @@ from __future__ import annotations
 
 import hashlib
 import re
+from dataclasses import dataclass
 
 from mdlcad.errors import SignoffError
 
-_ENTITY = re.compile(r"#(\d+)\s*=\s*(.*)", re.DOTALL)
 _REFERENCE = re.compile(r"#(\d+)")
-_STRING = re.compile(r"('(?:[^']|'')*')")
+_STRING = re.compile(r"'(?:[^']|'')*'")
+# Stand in for what strings may hold, while statements and references are found by their marks.
+_HIDDEN = str.maketrans({"#": "\x01", ";": "\x02"})
+_SHOWN = str.maketrans({"\x01": "#", "\x02": ";"})
 # Sets whose order the writer takes from memory.
 _UNORDERED = "MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION"
 # Merged when equal: geometry and style carry no identity of their own. Topology (vertices, edges, faces) is left
 # alone, since two solids that touch must stay two solids.
-_MERGED = (
-    "CARTESIAN_POINT",
-    "DIRECTION",
-    "VECTOR",
-    "LINE",
-    "CIRCLE",
-    "AXIS2_PLACEMENT_3D",
-    "PLANE",
-    "CYLINDRICAL_SURFACE",
-    "COLOUR_RGB",
-    "DRAUGHTING_PRE_DEFINED_COLOUR",
-    "DRAUGHTING_PRE_DEFINED_CURVE_FONT",
-    "FILL_AREA_STYLE_COLOUR",
-    "FILL_AREA_STYLE",
-    "SURFACE_STYLE_FILL_AREA",
-    "SURFACE_SIDE_STYLE",
-    "SURFACE_STYLE_USAGE",
-    "CURVE_STYLE",
-    "PRESENTATION_STYLE_ASSIGNMENT",
+_MERGED = frozenset(
+    {
+        "CARTESIAN_POINT",
+        "DIRECTION",
+        "VECTOR",
+        "LINE",
+        "CIRCLE",
+        "AXIS2_PLACEMENT_3D",
+        "PLANE",
+        "CYLINDRICAL_SURFACE",
+        "COLOUR_RGB",
+        "DRAUGHTING_PRE_DEFINED_COLOUR",
+        "DRAUGHTING_PRE_DEFINED_CURVE_FONT",
+        "FILL_AREA_STYLE_COLOUR",
+        "FILL_AREA_STYLE",
+        "SURFACE_STYLE_FILL_AREA",
+        "SURFACE_SIDE_STYLE",
+        "SURFACE_STYLE_USAGE",
+        "CURVE_STYLE",
+        "PRESENTATION_STYLE_ASSIGNMENT",
+    }
 )
+
+
+@dataclass(slots=True)
+class _Entity:
+    """One entity: its type, the text between its references, and the references, in order."""
+
+    kind: str
+    texts: list[str]
+    references: list[int]
 
 
 def canonical_step(text: str) -> str:
@@ -53,57 +67,50 @@ def canonical_step(text: str) -> str:
         raise SignoffError("the STEP writer gave a file without a DATA section")
     entities = _entities(data)
     digests = _digests(entities)
-    _sort_unordered(entities, digests)
+    for entity in entities.values():
+        if entity.kind == _UNORDERED:
+            _sort_unordered(entity, digests)
     representative = _merge(entities, digests)
     order = _walk(entities, digests, representative)
     number = {old: new for new, old in enumerate(order, start=1)}
-    lines = []
-    for old in order:
-        parts = _STRING.split(entities[old])
-        parts[::2] = [
-            _REFERENCE.sub(lambda match: f"#{number[representative[int(match[1])]]}", part) for part in parts[::2]
-        ]
-        lines.append(f"#{number[old]}={''.join(parts)};\n")
-    return head + mark + "".join(lines) + end_mark + tail
+    lines = [_written(entities[old], number[old], number, representative) for old in order]
+    return head + mark + "".join(lines).translate(_SHOWN) + end_mark + tail
 
 
-def _entities(data: str) -> dict[int, str]:
-    found: dict[int, str] = {}
-    for statement in _statements(data):
-        match = _ENTITY.fullmatch(statement.strip())
-        if match is None:
+def _written(entity: _Entity, own: int, number: dict[int, int], representative: dict[int, int]) -> str:
+    parts = [f"#{own}={entity.texts[0]}"]
+    for reference, text in zip(entity.references, entity.texts[1:], strict=True):
+        parts.append(f"#{number[representative[reference]]}{text}")
+    parts.append(";\n")
+    return "".join(parts)
+
+
+def _entities(data: str) -> dict[int, _Entity]:
+    found: dict[int, _Entity] = {}
+    hidden = _STRING.sub(lambda match: match[0].replace("\n", "").translate(_HIDDEN), data)
+    for statement in hidden.split(";"):
+        if not statement.strip():
+            continue
+        name, equals, value = statement.partition("=")
+        label = name.strip()
+        if not equals or not label.startswith("#") or not label[1:].isdigit():
             raise SignoffError(f"not a STEP entity: {statement.strip()[:60]}")
-        parts = _STRING.split(match[2])
-        parts[::2] = [re.sub(r"\s+", "", part) for part in parts[::2]]
-        parts[1::2] = [part.replace("\n", "") for part in parts[1::2]]
-        found[int(match[1])] = "".join(parts)
+        pieces = _REFERENCE.split(_tight(value))
+        kind = pieces[0].partition("(")[0]
+        found[int(label[1:])] = _Entity(kind, pieces[0::2], [int(piece) for piece in pieces[1::2]])
     return found
 
 
-def _references(body: str) -> list[int]:
-    """Entities that ``body`` refers to, in order; a "#1" inside a string is text."""
-    return [int(ref) for part in _STRING.split(body)[::2] for ref in _REFERENCE.findall(part)]
+def _tight(value: str) -> str:
+    """Without the white space between tokens; strings keep theirs."""
+    if "'" not in value:
+        return "".join(value.split())
+    parts = re.split(r"('(?:[^']|'')*')", value)
+    parts[::2] = ["".join(part.split()) for part in parts[::2]]
+    return "".join(parts)
 
 
-def _statements(data: str) -> list[str]:
-    if "'" not in data:
-        return [part for part in data.split(";") if part.strip()]
-    pieces: list[str] = []
-    current: list[str] = []
-    for index, part in enumerate(_STRING.split(data)):
-        if index % 2:
-            current.append(part)
-            continue
-        first, *others = part.split(";")
-        current.append(first)
-        for other in others:
-            pieces.append("".join(current))
-            current = [other]
-    pieces.append("".join(current))
-    return [piece for piece in pieces if piece.strip()]
-
-
-def _digests(entities: dict[int, str]) -> dict[int, bytes]:
+def _digests(entities: dict[int, _Entity]) -> dict[int, bytes]:
     """Content hash of every entity over all it refers to (references have no cycles in STEP geometry)."""
     digests: dict[int, bytes] = {}
     for root in entities:
@@ -113,52 +120,43 @@ def _digests(entities: dict[int, str]) -> dict[int, bytes]:
             if current in digests:
                 stack.pop()
                 continue
-            references = _references(entities[current])
-            missing = [ref for ref in references if ref not in digests]
+            entity = entities[current]
+            missing = [ref for ref in entity.references if ref not in digests]
             if missing:
                 stack.extend(missing)
                 continue
             stack.pop()
-            body = entities[current]
-            hashed = [digests[ref] for ref in references]
-            if body.startswith(_UNORDERED):
+            hashed = [digests[ref] for ref in entity.references]
+            if entity.kind == _UNORDERED:
                 hashed.sort()
-            parts = _STRING.split(body)
-            parts[::2] = [_REFERENCE.sub("#", part) for part in parts[::2]]
-            shape = "".join(parts).encode()
-            digests[current] = hashlib.blake2b(shape + b"".join(hashed), digest_size=16).digest()
+            content = "#".join(entity.texts).encode() + b"".join(hashed)
+            digests[current] = hashlib.blake2b(content, digest_size=16).digest()
     return digests
 
 
-def _sort_unordered(entities: dict[int, str], digests: dict[int, bytes]) -> None:
-    for key, body in entities.items():
-        if body.startswith(_UNORDERED):
-            before, _, rest = body.partition("(#")
-            items, _, after = rest.partition(")")
-            references = sorted((int(ref) for ref in _REFERENCE.findall("#" + items)), key=lambda ref: digests[ref])
-            entities[key] = f"{before}({','.join(f'#{ref}' for ref in references)}){after}"
+def _sort_unordered(entity: _Entity, digests: dict[int, bytes]) -> None:
+    """Sort the set of items: all references but the last, which is the context."""
+    *items, context = entity.references
+    entity.references = [*sorted(items, key=lambda ref: digests[ref]), context]
 
 
-def _merge(entities: dict[int, str], digests: dict[int, bytes]) -> dict[int, int]:
+def _merge(entities: dict[int, _Entity], digests: dict[int, bytes]) -> dict[int, int]:
     first: dict[bytes, int] = {}
-    representative: dict[int, int] = {}
-    for key, body in entities.items():
-        if body.partition("(")[0] in _MERGED:
-            representative[key] = first.setdefault(digests[key], key)
-        else:
-            representative[key] = key
-    return representative
+    return {
+        key: first.setdefault(digests[key], key) if entity.kind in _MERGED else key for key, entity in entities.items()
+    }
 
 
-def _walk(entities: dict[int, str], digests: dict[int, bytes], representative: dict[int, int]) -> list[int]:
+def _walk(entities: dict[int, _Entity], digests: dict[int, bytes], representative: dict[int, int]) -> list[int]:
     """Entities in the order of a depth-first walk from the roots: the product structure as written, then the styles.
 
     Only what hangs below the style root is written in the order of addresses; it is ordered by content.
     """
-    referenced = {ref for body in entities.values() for ref in _references(body)}
+    referenced = {ref for entity in entities.values() for ref in entity.references}
     unreferenced = [key for key in entities if key not in referenced]
-    styles = [key for key in unreferenced if entities[key].startswith(_UNORDERED)]
-    roots = [key for key in unreferenced if key not in styles] + sorted(styles, key=lambda key: digests[key])
+    styles = [key for key in unreferenced if entities[key].kind == _UNORDERED]
+    roots = [key for key in unreferenced if entities[key].kind != _UNORDERED]
+    roots += sorted(styles, key=lambda key: digests[key])
     order: list[int] = []
     seen: set[int] = set()
     stack = [representative[root] for root in reversed(roots)]
@@ -168,6 +166,7 @@ def _walk(entities: dict[int, str], digests: dict[int, bytes], representative: d
             continue
         seen.add(current)
         order.append(current)
-        references = [representative[ref] for ref in _references(entities[current])]
-        stack.extend(ref for ref in reversed(references) if ref not in seen)
+        stack.extend(
+            ref for ref in (representative[ref] for ref in reversed(entities[current].references)) if ref not in seen
+        )
     return order

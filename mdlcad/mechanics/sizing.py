@@ -49,7 +49,8 @@ def size(network: Network, process: Process, peak: Mapping[str, float]) -> Sizin
     couplers = _couplers(network, process, law, throw)
     biases = _biases(network, process, law, throw)
     absorbed = _self_terms(network, couplers, biases)
-    row_pitch = _up(law.shuttle_height + 2.0 * throw + process.link.gap)
+    # a cut edge may stand out by the repeatability; a strained leaf bulges by less than that beyond its ends
+    row_pitch = _up(law.shuttle_height + 2.0 * throw + process.link.gap + process.machine.repeatability)
     k_least = min(min(mass.k0, mass.k0 + 2.0 * mass.k1) for mass in network.masses)
     series = series_spring(process, law, row_pitch, k_least, max(absorbed.values()))
     units = tuple(_unit(mass, absorbed[mass.name], peak[mass.name], process, law) for mass in network.masses)

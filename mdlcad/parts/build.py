@@ -9,7 +9,7 @@ from mdlcad.mechanics.sizing import Sizing
 from mdlcad.network.model import Network
 from mdlcad.parts.bias import bias_bodies
 from mdlcad.parts.body import Body, BodyKind
-from mdlcad.parts.carrier import rung_body, tab_body, tab_notch, trunk_body
+from mdlcad.parts.carrier import joined_rungs, rung_body, tab_body, tab_notch, trunk_body
 from mdlcad.parts.clock import clock_pin, clock_plates, handle_notch, handle_place
 from mdlcad.parts.coupler import coupler_body
 from mdlcad.parts.frame import frame_bodies, rib_posts, ribs
@@ -46,9 +46,9 @@ def build_parts(
     biases = {item.mass: item for item in sizing.biases}
     used = hub_plates(layout)
 
-    links: list[Body] = [rung_body(stack, hubs, rung) for rung in layout.rungs]
+    links = joined_rungs([rung_body(stack, hubs, rung) for rung in layout.rungs])
     links += [trunk_body(stack, trunk, layout.rungs) for trunk in layout.trunks]
-    tabs = [tab_body(stack, tab, links) for tab in layout.tabs]
+    tabs = [tab_body(stack, tab, links, layout.rungs) for tab in layout.tabs]
     flexures: list[Body] = []
     for leaf in layout.couplers:
         source, target = hubs[source_of(leaf.coupling)], hubs[target_of(leaf.coupling)]

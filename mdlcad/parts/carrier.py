@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 from shapely import Polygon
 
@@ -43,6 +44,29 @@ def rung_body(stack: Stack, hubs: Mapping[str, Hub], rung: Rung) -> Body:
     return stack.sheet(name, BodyKind.RUNG, rung.plate, section, (0.0, rules.throw), moves, palette.RUNG)
 
 
+def joined_rungs(rungs: Sequence[Body]) -> list[Body]:
+    """The rungs, those of one net that lie over each other on a plate (left and right of one via) made one body."""
+    groups: list[list[Body]] = []
+    for rung in rungs:
+        own = [
+            group
+            for group in groups
+            if group[0].plate == rung.plate
+            and group[0].moves_with == rung.moves_with
+            and any(other.section.intersects(rung.section) for other in group)
+        ]
+        merged = [rung]
+        for group in own:
+            merged = group + merged
+            groups.remove(group)
+        groups.append(merged)
+    groups.sort(key=lambda group: rungs.index(group[0]))
+    return [
+        group[0] if len(group) == 1 else replace(group[0], section=only(join([body.section for body in group])))
+        for group in groups
+    ]
+
+
 def trunk_body(stack: Stack, trunk: Trunk, rungs: Sequence[Rung]) -> Body:
     """A trunk with the holes of its via pins."""
     rules = stack.sizing.rules
@@ -60,8 +84,8 @@ def via_refs(rung: Rung) -> set[str]:
     return {end.ref for end in (rung.left, rung.right) if end.kind is EndKind.VIA}
 
 
-def tab_body(stack: Stack, tab: Tab, carriers: Sequence[Body]) -> Body:
-    """A tab, butting against the carrier bodies of its net on its plate.
+def tab_body(stack: Stack, tab: Tab, carriers: Sequence[Body], rungs: Sequence[Rung]) -> Body:
+    """A tab, butting against the carrier bodies of its net on its plate, with the holes of pins that it comes to lie on.
 
     Raises:
         ValueError: nothing is left of it, or its own carrier cuts it in two.
@@ -74,6 +98,13 @@ def tab_body(stack: Stack, tab: Tab, carriers: Sequence[Body]) -> Body:
         path[0] = (x0, y0 - (rules.bar_width / 2.0 if y1 > y0 else -rules.bar_width / 2.0))
     ref = mass_ref(tab.net)
     own = [body.section for body in carriers if body.plate == tab.plate and body.moves_with == (ref,)]
+    own += [
+        square(end.x, rung.y, rules.pin)
+        for rung in rungs
+        if rung.net == tab.net
+        for end in (rung.left, rung.right)
+        if end.kind is EndKind.VIA
+    ]
     left = pieces(cut(strip(path, rules.bar_width), own))
     if len(left) != 1:
         raise ValueError(f"tab {tab.bit}: its carrier leaves {len(left)} pieces of it")

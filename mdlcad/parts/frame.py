@@ -50,8 +50,10 @@ def rib_posts(stack: Stack, hubs: Sequence[Hub], found: Sequence[Polygon], bound
         rows = sorted(
             {hub.y for hub in hubs if hub.x - rules.unit_left < x < hub.x and rib.bounds[1] < hub.y < rib.bounds[3]}
         )
-        places = sorted({round(y + step, 4) for y in rows for step in (-rules.row_pitch / 2.0, rules.row_pitch / 2.0)})
-        for y in places:
+        places = sorted(round(y + step, 4) for y in rows for step in (-rules.row_pitch / 2.0, rules.row_pitch / 2.0))
+        # the place above one row is the place below the next, but for rounding
+        distinct = [y for index, y in enumerate(places) if index == 0 or y - places[index - 1] > rules.pin]
+        for y in distinct:
             swept = box(x - walls / 2.0 - clear, y - walls / 2.0, x + walls / 2.0 + clear, y + walls / 2.0)
             if not inner.contains(swept):
                 continue  # the rim holds the rib there
