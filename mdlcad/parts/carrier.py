@@ -85,7 +85,7 @@ def via_refs(rung: Rung) -> set[str]:
 
 
 def tab_body(stack: Stack, tab: Tab, carriers: Sequence[Body], rungs: Sequence[Rung]) -> Body:
-    """A tab, butting against the carrier bodies of its net on its plate, with the holes of pins that it comes to lie on.
+    """A tab, butting against the carrier bodies of its net on its plate, with holes for pins under it.
 
     Raises:
         ValueError: nothing is left of it, or its own carrier cuts it in two.

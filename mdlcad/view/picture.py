@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 import pyvista
+import vtk
 from numpy.typing import NDArray
 
 from mdlcad.export.solid import prism, triangles
 from mdlcad.parts.body import Body
 
 _WINDOW = (1600, 1200)
+# VTK asks for an X server first and says so on the terminal when there is none
+vtk.vtkLogger.SetStderrVerbosity(vtk.vtkLogger.VERBOSITY_ERROR)
+if "DISPLAY" not in os.environ:
+    os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
 
 
 def device_mesh(bodies: Sequence[Body], lift_mm: dict[str, float] | None = None) -> pyvista.PolyData:
@@ -60,6 +66,6 @@ def write_picture(
         plotter.camera_position = "iso"
         plotter.camera.azimuth = -15.0
         plotter.camera.elevation = 5.0
-        plotter.camera.zoom(1.3)
+        plotter.camera.zoom(1.0 if lift_mm else 1.3)
     plotter.screenshot(str(path))
     plotter.close()

@@ -6,10 +6,11 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from mdlcad.parts.body import Body
+from mdlcad.parts.plates import plates_of
 from mdlcad.view.picture import write_picture
 
 # Exploded by this share of the device's larger side per plate: far enough apart to see between, whatever the size.
-_EXPLODE = 0.12
+_EXPLODE = 0.1
 
 
 def write_views(bodies: Sequence[Body], folder: Path, progress: Callable[[str], None]) -> tuple[str, ...]:
@@ -19,7 +20,8 @@ def write_views(bodies: Sequence[Body], folder: Path, progress: Callable[[str], 
     plates: dict[str, float] = {}
     for body in bodies:
         plates[body.plate] = min(plates.get(body.plate, body.z), body.z)
-    order = sorted(plates, key=lambda plate: plates[plate])
+    cut = set(plates_of(bodies)) - {"shims"}
+    order = sorted(cut, key=lambda plate: plates[plate])
     side = max(body.section.bounds[2] for body in bodies) - min(body.section.bounds[0] for body in bodies)
     lift = {plate: number * _EXPLODE * side for number, plate in enumerate(order)}
     written = []
@@ -30,7 +32,9 @@ def write_views(bodies: Sequence[Body], folder: Path, progress: Callable[[str], 
         written.append(f"views/{name}.png")
 
     picture("stack", [body for body in bodies if body.plate != "cover"], from_above=False)
-    picture("exploded", bodies, from_above=False, lift_mm=lift)
+    # shims and stock would hang between the plates
+    apart = [body for body in bodies if body.plate in cut]
+    picture("exploded", apart, from_above=False, lift_mm=lift)
     for plate in order:
         picture(f"plate-{plate}", [body for body in bodies if body.plate == plate], from_above=True)
     return tuple(written)
