@@ -15,7 +15,7 @@ import numba
 import numpy as np
 import numpy.typing as npt
 
-from mdlcad.placement.problem import BETWEEN, Ints, Problem
+from mdlcad.placement.problem import BETWEEN, Floats, Ints, Problem
 from mdlcad.placement.state import DEEP, State
 
 HARD = 12.0
@@ -28,83 +28,76 @@ VIA_A, VIA_B, BIAS_A, BIAS_B, STRAIGHT, POST_A, POST_B, SPOST_A, SPOST_B, COUNT_
 SLOT, BIAS_SIDE = 0, 1
 
 
-@numba.njit(cache=True)
-def _row_cost(p: Problem, s: State, channel: int, row: int) -> float:
-    t = s.row[channel, row]
-    plates = int(p.sizes[2])
+# The small functions take single rows, not the whole state: numba passes every array of a tuple by value.
+
+
+@numba.njit(cache=True, forceinline=True)
+def _row_cost(t: Ints, is_open: int, plates: int) -> float:
+    """Penalty of one row of a channel from its tallies."""
     straight = t[STRAIGHT]
     over = max(t[VIA_A] + t[BIAS_A], t[VIA_B] + t[BIAS_B]) - plates
     cost = 0
     if straight > 0:
         over = max(t[VIA_A], t[VIA_B]) + straight + max(t[BIAS_A], t[BIAS_B]) - plates
-        cost += (t[POST_A] + t[POST_B] > 0) + (t[SPOST_A] + t[SPOST_B] > 1) + (p.is_open[channel, row] == 0)
+        cost += (t[POST_A] + t[POST_B] > 0) + (t[SPOST_A] + t[SPOST_B] > 1) + (is_open == 0)
     cost += max(0, over)
     cost += max(0, t[POST_A] + t[BIAS_A] + t[SPOST_A] - 1) + max(0, t[POST_B] + t[BIAS_B] + t[SPOST_B] - 1)
     return HARD * cost
 
 
 @numba.njit(cache=True)
-def _order(s: State, a: int, b: int, sign: int) -> float:
-    """One row more (or less) asks net-channel a to run left of b."""
-    old = s.before[a, b]
-    s.before[a, b] = old + sign
-    if (sign > 0 and old == 0) or (sign < 0 and old == 1):
-        return sign * ORDER
-    return 0.0
+def _piece(
+    t: Ints,
+    items: Ints,
+    before: npt.NDArray[np.int16],
+    is_open: int,
+    plates: int,
+    net: int,
+    side: int,
+    posted: bool,
+    sign: int,
+) -> float:
+    """Add (+1) or remove (-1) one trunk-borne item of net-channel ``net`` in a row; side 0 hangs on its left.
 
-
-@numba.njit(cache=True)
-def _via(s: State, net: int, channel: int, row: int, side: int, posted: bool, sign: int) -> float:
-    """Add (+1) or remove (-1) one trunk-borne item of net-channel ``net``; side 0 hangs on the left of the channel."""
-    cost = 0.0
-    t = s.row[channel, row]
+    What hangs on the left must run left of what hangs on the right; on one side, what has a post reaches furthest.
+    """
+    cost = -_row_cost(t, is_open, plates)
     t[VIA_A + side] += sign
-    mine = s.items[channel, row, side]
+    if posted:
+        t[POST_A + side] += sign
     code = 2 * net + posted
     if sign < 0:
-        t[COUNT_A + side] -= 1
-        n = t[COUNT_A + side]
+        n = t[COUNT_A + side] - 1
+        t[COUNT_A + side] = n
         for i in range(n + 1):
-            if mine[i] == code:
-                mine[i] = mine[n]
+            if items[side, i] == code:
+                items[side, i] = items[side, n]
                 break
     for k in range(2):
-        other = s.items[channel, row, k]
         for i in range(t[COUNT_A + k]):
-            j, posted_j = other[i] // 2, other[i] % 2
-            if j == net:
+            j, posted_j = items[k, i] // 2, items[k, i] % 2 == 1
+            if j == net or (k == side and posted == posted_j):
                 continue
-            if k != side:
-                a, b = (net, j) if side == 0 else (j, net)
-            elif posted != (posted_j == 1):
-                # the one with the post must reach furthest from their hub
-                a, b = (net, j) if (posted_j == 1) == (side == 0) else (j, net)
-            else:
-                continue
-            cost += _order(s, a, b, sign)
+            first = side == 0 if k != side else posted_j == (side == 0)
+            a, b = (net, j) if first else (j, net)
+            old = before[a, b]
+            before[a, b] = old + sign
+            if (sign > 0 and old == 0) or (sign < 0 and old == 1):
+                cost += sign * ORDER
     if sign > 0:
-        mine[t[COUNT_A + side]] = code
+        items[side, t[COUNT_A + side]] = code
         t[COUNT_A + side] += 1
-    return cost
+    return cost + _row_cost(t, is_open, plates)
 
 
-@numba.njit(cache=True)
-def _piece(p: Problem, s: State, net: int, channel: int, row: int, side: int, posted: bool, sign: int) -> float:
-    """One trunk-borne item with its row's penalty."""
-    cost = -_row_cost(p, s, channel, row)
-    cost += _via(s, net, channel, row, side, posted, sign)
-    if posted:
-        s.row[channel, row, POST_A + side] += sign
-    return cost + _row_cost(p, s, channel, row)
-
-
-@numba.njit(cache=True)
+@numba.njit(cache=True, forceinline=True)
 def _half(p: Problem, s: State, mass: int, side: int, sign: int) -> float:
     """One net's pieces in the channel left (0) or right (1) of its source."""
     slot = s.mass[mass, SLOT]
     column, row = p.slot[slot, 0], p.slot[slot, 1]
     channel = column + side
     targets, tabs, chosen = 0, 0, -1
+    plates = int(p.sizes[2])
     straight = False
     for i in range(p.mass[mass, 0], p.mass[mass + 1, 0]):
         coupling = p.outs[i]
@@ -121,11 +114,12 @@ def _half(p: Problem, s: State, mass: int, side: int, sign: int) -> float:
     if targets + tabs == 0:
         return 0.0
     if targets + tabs == 1 and straight:
-        cost = -_row_cost(p, s, channel, row)
-        s.row[channel, row, STRAIGHT] += sign
+        t, is_open = s.row[channel, row], p.is_open[channel, row]
+        cost = -_row_cost(t, is_open, plates)
+        t[STRAIGHT] += sign
         if targets == 1 and p.coupling[chosen, 2]:
-            s.row[channel, row, SPOST_A + side] += sign
-        return cost + _row_cost(p, s, channel, row)
+            t[SPOST_A + side] += sign
+        return cost + _row_cost(t, is_open, plates)
     net = 2 * mass + side
     s.dirty[channel] = 1
     low, high = row, row
@@ -137,7 +131,9 @@ def _half(p: Problem, s: State, mass: int, side: int, sign: int) -> float:
     else:
         x_high = p.hub_x[column] - p.sizes[0]
         x_low = -1e9 if free else p.limits[channel, row, 3]
-    cost = _piece(p, s, net, channel, row, 1 - side, False, sign)
+    t, items = s.row[channel], s.items[channel]
+    is_open = p.is_open[channel]
+    cost = _piece(t[row], items[row], s.before, is_open[row], plates, net, 1 - side, False, sign)
     for i in range(p.mass[mass, 0], p.mass[mass + 1, 0]):
         coupling = p.outs[i]
         there = s.mass[p.coupling[coupling, 1], SLOT]
@@ -152,7 +148,8 @@ def _half(p: Problem, s: State, mass: int, side: int, sign: int) -> float:
             else:
                 x_high = min(x_high, p.hub_x[channel] - p.reach[coupling])
                 x_low = x_low if free else max(x_low, p.limits[channel, at, 3])
-            cost += _piece(p, s, net, channel, at, hub, p.coupling[coupling, 2] != 0, sign)
+            posted = p.coupling[coupling, 2] != 0
+            cost += _piece(t[at], items[at], s.before, is_open[at], plates, net, hub, posted, sign)
     for tab in range(p.mass[mass, 2], p.mass[mass + 1, 2]):
         if p.way[tab, column, 0] == channel:
             low, high = min(low, p.tab[tab, 0]), max(high, p.tab[tab, 1])
@@ -160,7 +157,7 @@ def _half(p: Problem, s: State, mass: int, side: int, sign: int) -> float:
             for at in range(p.tab[tab, 0], p.tab[tab, 1] + 1):
                 for hub in range(2):
                     if kind == BETWEEN or hub == kind:
-                        cost += _piece(p, s, net, channel, at, hub, False, sign)
+                        cost += _piece(t[at], items[at], s.before, is_open[at], plates, net, hub, False, sign)
     cost += sign * WIRE * (high - low)
     for at in range(low, high + 1):
         x_low = max(x_low, p.limits[channel, at, 0])
@@ -180,7 +177,7 @@ def _half(p: Problem, s: State, mass: int, side: int, sign: int) -> float:
     return cost
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, forceinline=True)
 def _tracks(p: Problem, s: State, channel: int) -> float:
     """Penalty of a channel's trunks: how far past their windows the best-first packing from the left pushes them.
 
@@ -232,17 +229,23 @@ def _tracks(p: Problem, s: State, channel: int) -> float:
     return cost
 
 
+@numba.njit(cache=True, forceinline=True)
+def _outside(p: Problem, channel: int, row: int, x: float) -> bool:
+    return bool(x < p.limits[channel, row, 0] - 1e-6 or x > p.limits[channel, row, 1] + 1e-6)
+
+
 @numba.njit(cache=True)
 def _bias(p: Problem, s: State, mass: int, sign: int) -> float:
     slot = s.mass[mass, SLOT]
     column, row = p.slot[slot, 0], p.slot[slot, 1]
     side = s.mass[mass, BIAS_SIDE]
     channel = column + side
-    cost = -_row_cost(p, s, channel, row)
-    s.row[channel, row, BIAS_B - side] += sign
-    cost += _row_cost(p, s, channel, row)
+    t, is_open, plates = s.row[channel, row], p.is_open[channel, row], int(p.sizes[2])
+    cost = -_row_cost(t, is_open, plates)
+    t[BIAS_B - side] += sign
+    cost += _row_cost(t, is_open, plates)
     end = p.hub_x[column] + (2 * side - 1) * p.sizes[3]
-    if end < p.limits[channel, row, 0] - 1e-6 or end > p.limits[channel, row, 1] + 1e-6:
+    if _outside(p, channel, row, end):
         cost += sign * HARD
     return cost
 
@@ -261,7 +264,7 @@ def _tally(p: Problem, s: State, nets: Ints, n: int, a: int, b: int, sign: int) 
     return cost
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, forceinline=True)
 def _draw(random: npt.NDArray[np.uint64]) -> float:
     """xorshift64*: uniform in [0, 1)."""
     x = random[0]
@@ -303,20 +306,19 @@ def _span(p: Problem, s: State, nets: Ints, n: int) -> float:
 
 
 @numba.njit(cache=True)
-def _passes(p: Problem, s: State) -> float:
+def _passes(p: Problem, s: State, wire: float) -> float:
     """Penalty of tabs that pass over hub columns: their length, and the masses in their way."""
     cost = 0.0
-    for mass in range(len(s.mass)):
-        for tab in range(p.mass[mass, 2], p.mass[mass + 1, 2]):
-            w = p.way[tab, p.slot[s.mass[mass, SLOT], 0]]
-            if w[0] < 0:
-                continue
-            for column in range(w[1], w[2] + 1):
-                cost += 10 * WIRE
-                for row in range(p.tab[tab, 0], p.tab[tab, 1] + 1):
-                    slot = p.slot_at[column, row]
-                    if slot >= 0 and s.mass_at[slot] >= 0:
-                        cost += HARD
+    for tab in range(len(p.tab)):
+        w = p.way[tab, p.slot[s.mass[p.tab[tab, 3], SLOT], 0]]
+        if w[0] < 0:
+            continue
+        for column in range(w[1], w[2] + 1):
+            cost += 10 * wire
+            for row in range(p.tab[tab, 0], p.tab[tab, 1] + 1):
+                slot = p.slot_at[column, row]
+                if slot >= 0 and s.mass_at[slot] >= 0:
+                    cost += HARD
     return cost
 
 
@@ -351,28 +353,45 @@ def _propose(p: Problem, s: State, mass: int, random: npt.NDArray[np.uint64]) ->
 
 
 @numba.njit(cache=True)
+def _hard(p: Problem, s: State, tracks: Floats, all_masses: Ints) -> float:
+    """The part of the cost that breaks rules, counted afresh; ``tracks`` are the channels' penalties."""
+    cost = np.sum(tracks) + _span(p, s, all_masses, len(all_masses)) + _passes(p, s, 0.0)
+    for channel in range(s.row.shape[0]):
+        for row in range(s.row.shape[1]):
+            cost += _row_cost(s.row[channel, row], p.is_open[channel, row], int(p.sizes[2]))
+    for mass in range(len(s.mass)):
+        if p.mass[mass, 3]:
+            column, row = p.slot[s.mass[mass, SLOT], 0], p.slot[s.mass[mass, SLOT], 1]
+            side = s.mass[mass, BIAS_SIDE]
+            if _outside(p, column + side, row, p.hub_x[column] + (2 * side - 1) * p.sizes[3]):
+                cost += HARD
+    return cost
+
+
+@numba.njit(cache=True)
 def anneal(
     p: Problem, s: State, random: npt.NDArray[np.uint64], moves: int, hot: float, cold: float, fixed: bool
 ) -> float:
-    """Anneal in place; ``fixed`` keeps the slots and changes sides only. Returns the final cost.
+    """Anneal in place; ``fixed`` keeps the slots and changes sides only. Returns the cost of broken rules that is left.
+
+    Ends as soon as no rule is broken, but not in the hot first half, so that wires shrink too.
 
     A slot move is first judged by its reach alone and only then in full (delayed acceptance), which keeps the
     stationary distribution and spares the tallies most of the hopeless moves.
     """
     masses, couplings = len(s.mass), len(p.coupling)
     nets = np.arange(max(masses, 4 * DEEP)).astype(np.int32)
-    cost = _span(p, s, nets, masses) + _passes(p, s)
     for mass in range(masses):
         nets[0] = mass
-        cost += _tally(p, s, nets, 1, mass, -1, 1)
+        _tally(p, s, nets, 1, mass, -1, 1)
     known = np.zeros(len(s.count))
     for channel in range(len(known)):
         s.dirty[channel] = 0
         known[channel] = _tracks(p, s, channel)
-        cost += known[channel]
     new = known.copy()
+    everyone = np.arange(masses).astype(np.int32)
     for move in range(moves):
-        if move % 1000 == 0 and cost < 0.9 * HARD:
+        if move % 1000 == 0 and 2 * move > moves and _hard(p, s, known, everyone) < 1e-6:
             break
         heat = hot * (cold / hot) ** (move / moves)
         kind = 2
@@ -397,9 +416,9 @@ def anneal(
             n = _gather(p, mass, nets, 0)
             if other >= 0:
                 n = _gather(p, other, nets, n)
-            reach = -_span(p, s, nets, n) - _passes(p, s)
+            reach = -_span(p, s, nets, n) - _passes(p, s, WIRE)
             _swap(s, mass, slot)
-            reach += _span(p, s, nets, n) + _passes(p, s)
+            reach += _span(p, s, nets, n) + _passes(p, s, WIRE)
             _swap(s, mass, old)
             if reach > 0 and _draw(random) >= math.exp(-reach / heat):
                 continue
@@ -425,6 +444,5 @@ def anneal(
                     if taken:
                         known[channel] = new[channel]
             if taken:
-                cost += change + reach
                 break
-    return cost
+    return _hard(p, s, known, everyone)

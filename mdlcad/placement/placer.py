@@ -15,25 +15,28 @@ from mdlcad.placement.placement import PlacedMass, Placement
 from mdlcad.placement.problem import build, realisable
 from mdlcad.placement.state import start
 
-MOVES_PER_MASS = 4000
-HOT, COLD = 8.0, 0.15
+MOVES_PER_MASS = 8000
+SIDE_MOVES_PER_MASS = 2000
+HOT, COLD = 8.0, 0.5
 
 
 @dataclass(frozen=True, slots=True)
 class PlaceResult:
-    """A placement, the cost that annealing left (below ``HARD``: no hard rule is known to be broken)."""
+    """A placement, and the cost of the rules that it is known to break (0: legal tracks exist)."""
 
     placement: Placement
     cost: float
 
 
-def place(network: Network, lattice: Lattice, rules: LayoutRules, seed: int) -> PlaceResult:
+def place(
+    network: Network, lattice: Lattice, rules: LayoutRules, seed: int, moves_per_mass: int = MOVES_PER_MASS
+) -> PlaceResult:
     """Anneal ``network`` onto ``lattice``, which must have a slot for every mass. Same arguments, same result."""
     problem = build(network, lattice, rules)
     slots = list(range(len(lattice.slots)))
     random.Random(seed).shuffle(slots)
     state, source = start(problem, np.array(slots[: len(network.masses)], np.int32), seed)
-    cost = anneal(problem, state, source, MOVES_PER_MASS * len(network.masses), HOT, COLD, False)
+    cost = anneal(problem, state, source, moves_per_mass * len(network.masses), HOT, COLD, False)
     masses = []
     for index, mass in enumerate(network.masses):
         column, row = lattice.slots[int(state.mass[index, 0])]
@@ -68,7 +71,7 @@ def choose_sides(network: Network, placement: Placement, lattice: Lattice, rules
     where = {placed.mass: index[placed.column, placed.row] for placed in placement.masses}
     columns = {placed.mass: placed.column for placed in placement.masses}
     state, source = start(problem, np.array([where[mass.name] for mass in network.masses], np.int32), seed)
-    cost = anneal(problem, state, source, 2000 * len(network.masses), HOT, COLD, True)
+    cost = anneal(problem, state, source, SIDE_MOVES_PER_MASS * len(network.masses), HOT, COLD, True)
     couplings = {}
     for i, j in enumerate(realisable(network, rules)):
         coupling = network.couplings[j]

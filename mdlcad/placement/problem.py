@@ -27,7 +27,7 @@ class Problem(NamedTuple):
         coupling: (J, 3) source mass, target mass, whether it has a post.
         mass: (M + 1, 4) first entry in ``outs``, in ``ins``, in ``tab``; whether it has a bias leaf.
         outs: couplings by source. ins: driving masses by target.
-        tab: (T, 3) lowest and highest row that its rung meets, row it lies in or -1; ordered by mass.
+        tab: (T, 4) lowest and highest row that its rung meets, row it lies in or -1, mass; ordered by mass.
         way: (T, columns, 4) from a mass in a column: channel (-1: none), first and last hub column it passes, and on
             which side of its rows it hangs (0 left, 1 right, 2 between both).
         slot: (S, 2) column, row. slot_at: (columns, rows) slot or -1.
@@ -82,7 +82,7 @@ def build(network: Network, lattice: Lattice, rules: LayoutRules) -> Problem:
         mass=np.stack([out_start, in_start, tab_start.astype(np.int32), biased], axis=1),
         outs=outs,
         ins=source[into],
-        tab=np.array([_tab(tab, lattice) for tab in tabs], np.int32).reshape(-1, 3),
+        tab=np.array([(*_tab(tab, lattice), masses[tab.mass]) for tab in tabs], np.int32).reshape(-1, 4),
         way=np.array([_ways(tab, len(lattice.column_x)) for tab in tabs], np.int32).reshape(
             len(tabs), len(lattice.column_x), 4
         ),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 
 from shapely import Polygon
 
@@ -18,13 +19,27 @@ from mdlcad.placement.ports import PortPlace
 from mdlcad.routing.layout import Layout
 from mdlcad.routing.router import route
 
-STEP = 1.03
-"""Ratio of one scale to the next: finer steps spend more time than they save in size."""
-MOST_STEPS = 40
-SEEDS = 1
-"""Seeds for every lattice of a scale: another lattice or the next scale finds a way sooner than another seed."""
-SLACK = 1.2
-"""Slots a mass: with fewer, annealing has no room to move in, and none of our examples was placed."""
+STEP = 1.06
+"""Ratio of one scale to the next while looking for a first that works."""
+FINE = 4
+"""Of this many parts of a step, those between the last scale that failed and the first that worked are tried too."""
+MOST_STEPS = 26
+SLACK = 1.1
+"""Slots a mass: with fewer, annealing has hardly room to move in."""
+SCREEN = 1500
+"""Moves a mass of the short anneal that ranks the lattices of a scale."""
+HOPELESS = 6 * HARD
+
+
+@dataclass(frozen=True, slots=True)
+class _Effort:
+    """How many of a scale's lattices are annealed in full, and with how many seeds each."""
+
+    lattices: int
+    seeds: int
+
+
+QUICK, PATIENT = _Effort(1, 1), _Effort(2, 2)
 
 
 def place_and_route(
@@ -37,6 +52,8 @@ def place_and_route(
 ) -> tuple[Placement, Layout]:
     """Place and route at the smallest scale (mm per grid unit) that works. Same arguments, same result.
 
+    Scales rise in steps of ``STEP`` until one works; then those just below it are tried again, more patiently.
+
     Args:
         boundary: vertices on the grid, clockwise. ports: places in grid units.
         progress: called with one line for every scale tried.
@@ -44,29 +61,72 @@ def place_and_route(
     Raises:
         SignoffError: no scale up to ``STEP ** MOST_STEPS`` times the least one works; says what was in the way.
     """
-    scale = _least_scale(network, boundary, rules)
-    reason = "no lattice with enough slots fits the boundary"
+    search = _Search(network, boundary, ports, rules, seed, progress or (lambda line: None))
+    scale = search.least_scale()
     for _ in range(MOST_STEPS):
-        placed = place_ports(network, ports, scale)
-        best = math.inf
-        for lattice in lattices(boundary, placed, rules, scale, math.ceil(SLACK * len(network.masses))):
-            for offset in range(SEEDS):
-                result = place(network, lattice, rules, seed + offset)
+        found = search.attempt(scale, QUICK)
+        if found is not None:
+            for k in range(1 - FINE, 0):
+                better = search.attempt(scale * STEP ** (k / FINE), PATIENT)
+                if better is not None:
+                    return better
+            return found
+        scale *= STEP
+    raise SignoffError(f"could not place and route {network.design}: {search.reason}")
+
+
+class _Search:
+    """One network in one boundary at varying scale. ``reason``: what was in the way at the last scale."""
+
+    def __init__(
+        self,
+        network: Network,
+        boundary: tuple[tuple[int, int], ...],
+        ports: tuple[PortPlace, ...],
+        rules: LayoutRules,
+        seed: int,
+        progress: Callable[[str], None],
+    ) -> None:
+        self.network, self.boundary, self.ports = network, boundary, ports
+        self.rules, self.seed, self.progress = rules, seed, progress
+        self.reason = "no lattice with enough slots fits the boundary"
+
+    def least_scale(self) -> float:
+        """mm per grid unit at which the units' footprints alone would fill the boundary."""
+        area = Polygon(self.boundary).area
+        need = len(self.network.masses) * (self.rules.unit_left + self.rules.unit_right) * self.rules.row_pitch
+        return math.sqrt(need / area)
+
+    def attempt(self, scale: float, effort: _Effort) -> tuple[Placement, Layout] | None:
+        """A placement and its layout at ``scale``, or None."""
+        scale = round(scale, 4)
+        placed = place_ports(self.network, self.ports, scale)
+        need = math.ceil(SLACK * len(self.network.masses))
+        choices = lattices(self.boundary, placed, self.rules, scale, need)
+        if not choices:
+            return None
+        screened = sorted(
+            (place(self.network, lattice, self.rules, self.seed, SCREEN).cost, index)
+            for index, lattice in enumerate(choices)
+        )
+        best = screened[0][0]
+        for cost, index in screened[: effort.lattices]:
+            for offset in range(effort.seeds if cost <= HOPELESS else 0):
+                result = place(self.network, choices[index], self.rules, self.seed + offset)
                 best = min(best, result.cost)
-                if result.cost >= HARD:
+                if result.cost > 0:
                     continue
                 try:
-                    return result.placement, route(network, result.placement, rules, seed + offset)
+                    layout = route(self.network, result.placement, self.rules, self.seed + offset)
                 except SignoffError as error:
-                    reason = str(error)
-        if progress is not None:
-            progress(f"{scale:.3f} mm per grid unit: {'no lattice' if best == math.inf else f'cost {best:.0f}'}")
-        scale = round(scale * STEP, 4)
-    raise SignoffError(f"could not place and route {network.design}: {reason}")
-
-
-def _least_scale(network: Network, boundary: tuple[tuple[int, int], ...], rules: LayoutRules) -> float:
-    """mm per grid unit at which the units' footprints alone would fill the boundary."""
-    area = Polygon(boundary).area
-    need = len(network.masses) * (rules.unit_left + rules.unit_right) * rules.row_pitch
-    return round(math.sqrt(need / area), 4)
+                    self.reason = str(error)
+                    continue
+                self.progress(f"{scale:.3f} mm per grid unit: routed")
+                return result.placement, layout
+        if best > 0:
+            words = f"{scale:.3f} mm per grid unit: about {max(1, round(best / HARD))} conflicts left"
+            self.reason = f"the best placement at {words}"
+            self.progress(words)
+        else:
+            self.progress(f"{scale:.3f} mm per grid unit: {self.reason}")
+        return None

@@ -75,6 +75,6 @@ def _complaint(channel: Channel, placement: Placement) -> str:
     tallest = sorted(channel.trunks, key=lambda t: (t.y_low - t.y_high, t.net))[:4]
     nets = ", ".join(trunk.net for trunk in tallest)
     return (
-        f"channel {channel.index} ({where}) cannot hold its {len(channel.trunks)} trunks and {len(channel.items)} items "
-        f"together; its longest nets are {nets}. A larger scale, another seed or a lower fan-out would help"
+        f"channel {channel.index} ({where}) cannot hold its {len(channel.trunks)} trunks with their "
+        f"{len(channel.items)} items; its longest nets are {nets}. A larger scale, another seed or a lower fan-out would help"
     )
