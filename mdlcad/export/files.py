@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import multiprocessing
 from collections.abc import Callable, Sequence
+from concurrent.futures import Executor, Future, ProcessPoolExecutor
+from contextlib import nullcontext
 from pathlib import Path
 
 from mdlcad.artefact import write_atomic
@@ -13,8 +16,12 @@ from mdlcad.parts.body import Body
 from mdlcad.parts.plates import plates_of
 
 
-def write_files(design: str, bodies: Sequence[Body], folder: Path, progress: Callable[[str], None]) -> tuple[str, ...]:
+def write_files(
+    design: str, bodies: Sequence[Body], folder: Path, workers: int, progress: Callable[[str], None]
+) -> tuple[str, ...]:
     """Write NAME.step, NAME.3mf and plates/PLATE.{step,stl,dxf,svg}; the paths written, relative to ``folder``.
+
+    STEP files take most of the time; with more than one worker they are made in processes beside this one.
 
     Raises:
         SignoffError: a file read back does not hold what it should.
@@ -27,13 +34,30 @@ def write_files(design: str, bodies: Sequence[Body], folder: Path, progress: Cal
         write_atomic(path, data)
         written.append(name)
 
-    progress("assembly")
-    put(f"{design}.step", step_assembly(design, bodies))
-    put(f"{design}.3mf", threemf_device(design, bodies))
-    for plate, members in plates_of(bodies).items():
-        progress(f"plate {plate}")
-        put(f"plates/{plate}.stl", stl_plate(plate, members))
-        put(f"plates/{plate}.svg", svg_plate(plate, members))
-        put(f"plates/{plate}.dxf", dxf_plate(members))
-        put(f"plates/{plate}.step", step_assembly(plate, members))
-    return tuple(written)
+    plates = plates_of(bodies)
+    # a child that was forked would share this one's CAD kernel
+    pool = ProcessPoolExecutor(min(workers, 2), multiprocessing.get_context("spawn")) if workers > 1 else nullcontext()
+    with pool as executor:
+        whole = _started(executor, design, bodies)
+        parts = {plate: _started(executor, plate, members) for plate, members in plates.items()}
+        progress("3MF")
+        put(f"{design}.3mf", threemf_device(design, bodies))
+        for plate, members in plates.items():
+            progress(f"plate {plate}")
+            put(f"plates/{plate}.stl", stl_plate(plate, members))
+            put(f"plates/{plate}.svg", svg_plate(plate, members))
+            put(f"plates/{plate}.dxf", dxf_plate(members))
+        for plate, started in parts.items():
+            progress(f"STEP of plate {plate}")
+            put(f"plates/{plate}.step", started())
+        progress("STEP of the device")
+        put(f"{design}.step", whole())
+    return tuple(sorted(written))
+
+
+def _started(executor: Executor | None, name: str, bodies: Sequence[Body]) -> Callable[[], bytes]:
+    """A STEP file under way; calling the result waits for its bytes."""
+    if executor is None:
+        return lambda: step_assembly(name, bodies)
+    future: Future[bytes] = executor.submit(step_assembly, name, bodies)
+    return future.result

@@ -125,7 +125,8 @@ def _check_geometry(job: Job, state: State, progress: Progress) -> State:
 def _export(job: Job, state: State, progress: Progress) -> State:
     from mdlcad.export.files import write_files  # the CAD kernel takes seconds to load; early stages need not wait
 
-    return replace(state, files=write_files(need(state.device).name, need(state.bodies), job.folder, progress))
+    name, bodies = need(state.device).name, need(state.bodies)
+    return replace(state, files=write_files(name, bodies, job.folder, job.workers, progress))
 
 
 def _lvs(job: Job, state: State, progress: Progress) -> State:
