@@ -20,6 +20,8 @@ from mdlcad.mapping.subject import TRUE
 # In units of cost, of which a mass has 16.
 _HEAT = 18.0
 _RESTARTS = 3
+# A small device has few tastes; more passes find nothing new.
+_MOST_ROUNDS = 1500
 
 
 @dataclass(frozen=True, slots=True)
@@ -163,7 +165,7 @@ def search(graph: OptionGraph, start: Taste, effort: int, seed: int) -> Selectio
     best = make.select(start, falling=True)
     if best is None:
         raise ValueError("a node cannot be made from the ones before it")
-    rounds = effort // (_RESTARTS * max(1, len(best.chosen)))
+    rounds = min(_MOST_ROUNDS, effort // (_RESTARTS * max(1, len(best.chosen))))
     plain = best
     for restart in range(_RESTARTS):
         found = _anneal(graph, make, start, plain, rounds, Random(seed * _RESTARTS + restart))

@@ -67,6 +67,23 @@ class PowerUpTable:
 
 
 @dataclass(frozen=True, slots=True)
+class CharacterisedTable:
+    """Table ``characterised``: where the library was found to work, by the window and yield tools on the examples.
+
+    Attributes:
+        least_period, greatest_period, least_damping: all examples behave for every T and b between these and the
+            shipped damping.
+        spread: standard deviation of scatter (relative on springs; see ``simulation.scatter``) up to which at least
+            nine devices in ten behave.
+    """
+
+    least_period: float
+    greatest_period: float
+    least_damping: float
+    spread: float
+
+
+@dataclass(frozen=True, slots=True)
 class Library:
     """One library, the tables of its ``library.toml``. All quantities are dimensionless."""
 
@@ -78,6 +95,7 @@ class Library:
     bias: BiasTable
     gates: GatesTable
     power_up: PowerUpTable
+    characterised: CharacterisedTable
 
     def network_dynamics(self) -> Dynamics:
         """The dynamics of a network made of this library."""
@@ -112,13 +130,14 @@ def load_library(name_or_path: str) -> Library:
 
 
 def _unknown_keys(table: dict[str, object]) -> list[str]:
-    tables: dict[str, type[DynamicsTable | MassTable | CouplingTable | BiasTable | GatesTable | PowerUpTable]] = {
+    tables = {
         "dynamics": DynamicsTable,
         "mass": MassTable,
         "coupling": CouplingTable,
         "bias": BiasTable,
         "gates": GatesTable,
         "power_up": PowerUpTable,
+        "characterised": CharacterisedTable,
     }
     unknown = []
     for key, value in table.items():
