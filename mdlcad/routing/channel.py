@@ -128,15 +128,13 @@ class _Model:
                     self._share(
                         i, j, self._before(box_a[1], box_b[0], self.gap), self._before(box_b[1], box_a[0], self.gap)
                     )
-        if own:
-            return
         pin, post = units(self.rules.pin / 2), units(self.rules.post_radius)
         for m, n in ((i, j), (j, i)):
             item = self.channel.items[m]
             for left, right, low, high in self._boxes(n):
                 if not self._near(item.y_low, item.y_high, low, high):
                     continue
-                if item.trunk is not None:
+                if item.trunk is not None and not own:
                     x = self.x[item.trunk]
                     self._either(
                         ~self._above(m, n),

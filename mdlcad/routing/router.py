@@ -76,5 +76,6 @@ def _complaint(channel: Channel, placement: Placement) -> str:
     nets = ", ".join(trunk.net for trunk in tallest)
     return (
         f"channel {channel.index} ({where}) cannot hold its {len(channel.trunks)} trunks with their "
-        f"{len(channel.items)} items; its longest nets are {nets}. A larger scale, another seed or a lower fan-out would help"
+        f"{len(channel.items)} items; its longest nets are {nets}. "
+        "A larger scale, another seed or a lower fan-out would help"
     )
