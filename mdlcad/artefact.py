@@ -40,8 +40,8 @@ def checksum(data: bytes) -> str:
 def write_atomic(path: Path, data: bytes) -> None:
     """Write beside ``path`` and rename, so that a reader sees the old file or the new one, never a part."""
     partial = path.with_name(path.name + ".partial")
-    with open(partial, "wb") as stream:
+    with partial.open("wb") as stream:
         stream.write(data)
         stream.flush()
         os.fsync(stream.fileno())
-    os.replace(partial, path)
+    partial.replace(path)

@@ -61,6 +61,11 @@ def _parser() -> argparse.ArgumentParser:
     verify.add_argument("--jobs", type=_jobs, default=2, metavar="N", help="processors to use (%(default)s)")
     verify.set_defaults(run=_verify)
 
+    simulate = commands.add_parser("simulate", help="let a built device act in a world, or follow a script")
+    simulate.add_argument("folder", type=Path, metavar="DIR")
+    simulate.add_argument("--scenario", metavar="NAME|PATH", help="which (the one named after the design)")
+    simulate.set_defaults(run=_simulate)
+
     for name, words in (("cells", "cell libraries"), ("processes", "fabrication processes")):
         listing = commands.add_parser(name, help=f"list the {words}, or show one")
         listing.add_argument("name", nargs="?", metavar="NAME")
@@ -114,6 +119,12 @@ def _verify(options: argparse.Namespace) -> int:
     from mdlcad.flow.verify import verify
 
     return _verdict(verify(options.folder, options.jobs, _say))
+
+
+def _simulate(options: argparse.Namespace) -> int:
+    from mdlcad.scenario import run_scenario
+
+    return _verdict(run_scenario(options.folder, options.scenario, _say))
 
 
 def _verdict(broken: list[str]) -> int:

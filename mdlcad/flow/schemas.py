@@ -15,6 +15,7 @@ from mdlcad.placement.placement import Placement
 from mdlcad.proof.outcome import Proof
 from mdlcad.report.report import Report
 from mdlcad.routing.layout import Layout
+from mdlcad.scenario.result import ScenarioResult
 from mdlcad.signoff.lvs import LvsResult
 from mdlcad.signoff.summary import DesignRules
 from mdlcad.synthesis.netlist import Netlist
@@ -30,6 +31,7 @@ ARTEFACTS: dict[str, Any] = {
     "drc": DesignRules,
     "extraction": tuple[LvsResult, Proof],
     "report": Report,
+    "result": ScenarioResult,
 }
 
 

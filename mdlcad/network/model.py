@@ -25,6 +25,8 @@ class MassKind(StrEnum):
 
 
 class CouplingKind(StrEnum):
+    """LINEAR: a spring between two masses. LATCH: the source modulates the target's stiffness."""
+
     LINEAR = "linear"
     LATCH = "latch"
 

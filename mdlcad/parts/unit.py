@@ -127,7 +127,7 @@ def _guided(x_start: float, x_end: float, y_start: float, y_end: float) -> list[
     """Centre line of a leaf whose ends do not turn: x follows 3 s^2 - 2 s^3."""
     if x_start == x_end:
         return [(x_start, y_start), (x_end, y_end)]
-    at = np.linspace(0.0, 1.0, 9)
+    at = np.linspace(0.0, 1.0, 5)  # within 0.01 mm of the bent leaf, in the drawing of the assembled unit
     shape = 3.0 * at**2 - 2.0 * at**3
     into = 0.2 * (y_start - y_end) / abs(y_start - y_end)  # mm into stem and truss, so that no slit is left there
     xs, ys = x_start + (x_end - x_start) * shape, y_start + (y_end - y_start) * at

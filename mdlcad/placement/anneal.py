@@ -165,11 +165,11 @@ def _half(p: Problem, s: State, mass: int, side: int, sign: int) -> float:
     if sign > 0:
         s.window[net, 0], s.window[net, 1] = x_low, x_high
         s.rows[net, 0], s.rows[net, 1] = low, high
-        s.trunks[channel, s.count[channel]] = net
-        s.count[channel] += 1
+        s.trunks[channel, s.trunk_count[channel]] = net
+        s.trunk_count[channel] += 1
     else:
-        n = s.count[channel] - 1
-        s.count[channel] = n
+        n = s.trunk_count[channel] - 1
+        s.trunk_count[channel] = n
         for i in range(n + 1):
             if s.trunks[channel, i] == net:
                 s.trunks[channel, i] = s.trunks[channel, n]
@@ -184,7 +184,7 @@ def _tracks(p: Problem, s: State, channel: int) -> float:
     Each step takes, of the trunks that could stand furthest left now, the one with the tightest right limit (limits
     are passed back along the order that rows ask for). Zero means that legal tracks exist: the packing is one.
     """
-    n = s.count[channel]
+    n = s.trunk_count[channel]
     pitch = p.sizes[1]
     nets, at, due, waits = s.trunks[channel], s.at, s.due, s.waits
     cost = 0.0
@@ -384,7 +384,7 @@ def anneal(
     for mass in range(masses):
         nets[0] = mass
         _tally(p, s, nets, 1, mass, -1, 1)
-    known = np.zeros(len(s.count))
+    known = np.zeros(len(s.trunk_count))
     for channel in range(len(known)):
         s.dirty[channel] = 0
         known[channel] = _tracks(p, s, channel)

@@ -21,7 +21,7 @@ class State(NamedTuple):
         row: (C, R, 11) tallies of a row of a channel.
         items: (C, R, 2, DEEP) what meets a row on either side: 2 * net-channel + whether it has a post.
         before: [i, j] counts the rows in which net-channel i must run left of net-channel j.
-        trunks, count: the net-channels with a trunk, by channel.
+        trunks, trunk_count: the net-channels with a trunk, by channel.
         window, rows: by net-channel, lowest and highest x (mm) and row of its trunk.
         dirty: channels whose trunks have changed. at, due, waits: room for packing tracks.
     """
@@ -33,7 +33,7 @@ class State(NamedTuple):
     items: Ints
     before: npt.NDArray[np.int16]
     trunks: Ints
-    count: Ints
+    trunk_count: Ints
     window: Floats
     rows: Ints
     dirty: Ints
@@ -61,7 +61,7 @@ def start(problem: Problem, slot_of: Ints, seed: int) -> tuple[State, npt.NDArra
         items=np.zeros((channels, rows, 2, DEEP), np.int32),
         before=np.zeros((2 * masses, 2 * masses), np.int16),
         trunks=np.zeros((channels, masses + 1), np.int32),
-        count=np.zeros(channels, np.int32),
+        trunk_count=np.zeros(channels, np.int32),
         window=np.zeros((2 * masses, 2)),
         rows=np.zeros((2 * masses, 2), np.int32),
         dirty=np.zeros(channels, np.int32),

@@ -94,20 +94,20 @@ class _Maker:
             if bias.mass in self.hub:
                 used.add((bias.mass, bias.side.value, bias.plate))
         half = self.rules.hub_height / 2
-        for mass, side, plate in sorted(used):
+        for mass, where, plate in sorted(used):
             hub = self.hub[mass]
             low, high = self.rules.hub_gap / 2, self.rules.hub_half
-            a, b = (low, high) if side == "right" else (-high, -low)
+            a, b = (low, high) if where == "right" else (-high, -low)
             shape = box(hub.x + a, hub.y - half, hub.x + b, hub.y + half)
-            self.moving(_block(mass, side, plate), plate, shape, mass)
+            self.moving(_block(mass, where, plate), plate, shape, mass)
         side_of_pin = self.rules.pin / 2
         for mass in sorted(self.hub):
             hub = self.hub[mass]
-            for side, sign in (("left", -1), ("right", 1)):
+            for where, sign in (("left", -1), ("right", 1)):
                 x = hub.x + sign * self.rules.hub_pin_offset
                 shape = box(x - side_of_pin, hub.y - side_of_pin, x + side_of_pin, hub.y + side_of_pin)
                 for plate in (TRUNK_PLATE, *self.rules.link_plates):
-                    self.moving(f"hub pin {mass} {side} on {plate}", plate, shape, mass)
+                    self.moving(f"hub pin {mass} {where} on {plate}", plate, shape, mass)
 
     def rung(self, rung: Rung) -> None:
         to_tab = EndKind.TAB in (rung.left.kind, rung.right.kind)

@@ -202,7 +202,7 @@ def _hub_sides(network: Network, layout: Layout, hubs: dict[str, PlacedMass]) ->
         used.setdefault(key, []).append(f"coupler {leaf.coupling}")
     for bias in layout.biases:
         used.setdefault((bias.mass, bias.side.value, bias.plate), []).append(f"bias {bias.mass}")
-    for (mass, side, plate), names in sorted(used.items()):
+    for (mass, where, plate), names in sorted(used.items()):
         if len(names) > 1 and mass in hubs:
-            words = f"the {side} side of hub {mass} holds {len(names)} items on plate {plate}"
+            words = f"the {where} side of hub {mass} holds {len(names)} items on plate {plate}"
             yield "hub_side", words, hubs[mass].x, hubs[mass].y, tuple(sorted(names))

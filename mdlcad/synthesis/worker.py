@@ -23,8 +23,9 @@ ELABORATE = (
     "check",
     "write_json raw.json",
 )
-# Memories first, for their cells have pins that must stay unknown. Unknowns are 0, everywhere and before any optimiser may choose otherwise. No synchronous-reset cells: a reset is
-# logic here. Enables are kept, for a register with an enable needs no multiplexer.
+# Memories first, for their cells have pins that must stay unknown. Unknowns are 0, everywhere and before any optimiser
+# may choose otherwise. No synchronous-reset cells: a reset is logic here. Enables are kept, for a register with an
+# enable needs no multiplexer.
 REGISTERS = (
     "memory -nordff",
     "setundef -zero -undriven -init",

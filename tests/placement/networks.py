@@ -22,7 +22,7 @@ def synthetic(
     gates = names[ring:]
     edges = {(names[i], names[(i + 1) % ring]) for i in range(ring)}
     degree: dict[str, int] = {}
-    for source, target in edges:
+    for _, target in sorted(edges):
         degree[target] = degree.get(target, 0) + 1
     for gate in rng.sample(gates, fan_out - 1):
         edges.add((names[0], gate))
@@ -114,6 +114,6 @@ def pom_rules(network: Network) -> LayoutRules:
         couplers={c.name: 24.0 if c.strength < 0 else 19.0 for c in network.couplings},
         biases={m.name: 19.0 for m in network.masses if m.bias != 0},
         post_radius=1.0,
-        post_offset={name: 12.0 for name in negative},
+        post_offset=dict.fromkeys(negative, 12.0),
         link_plates=("H0", "H1", "H2"),
     )
