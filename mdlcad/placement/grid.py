@@ -151,7 +151,9 @@ def _horizontal(
     reach = rules.bar_width / 2 + rules.throw
     tip = port.x + outside * _overhang(port, rules)
     y, edge = port.y, None
-    for candidate in _outwards(port.y, inner.bounds[1] + reach, inner.bounds[3] - reach, row_y):
+    # pins of one trunk stand a bar apart: a tab nearer to a row takes the row, and steps sideways outside
+    crowded = tuple(row for row in row_y if 1e-9 < abs(row - port.y) < rules.bar_width)
+    for candidate in (*crowded, *_outwards(port.y, inner.bounds[1] + reach, inner.bounds[3] - reach, row_y)):
         spans = free_intervals(inner, candidate - reach, candidate + reach)
         near = [span[1] if outside > 0 else span[0] for span in spans]
         near = [x for x in near if abs(x - port.x) <= 3 * (rules.frame_width + rules.gap)]

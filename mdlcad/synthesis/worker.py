@@ -66,7 +66,7 @@ def main() -> int:
 
     Path(PROGRAM).write_text(sys.stdin.read(), encoding="utf-8")
     design = libyosys.Design()
-    for command in (f"read_verilog {PROGRAM}", *ELABORATE, *REGISTERS, *REFERENCE, *NETLIST):
+    for command in (f"read_verilog -nodpi {PROGRAM}", *ELABORATE, *REGISTERS, *REFERENCE, *NETLIST):
         libyosys.run_pass(command, design)
     return 0
 
