@@ -18,7 +18,7 @@ from tests.mapping.two_phase.programs import lone_cell
 STEPS = 400
 HELD = 4  # cycles for which inputs are held
 
-SETS = ("robust", "literal")
+SETS = ("robust", "near", "literal")
 
 
 def outputs(network: Network, inputs: np.ndarray) -> np.ndarray:
