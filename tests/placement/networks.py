@@ -115,5 +115,12 @@ def pom_rules(network: Network) -> LayoutRules:
         biases={m.name: 19.0 for m in network.masses if m.bias != 0},
         post_radius=1.0,
         post_offset=dict.fromkeys(negative, 12.0),
-        link_plates=("H0", "H1", "H2"),
+        link_plates=("H0", "H1", "H2", "H3"),
     )
+
+
+def small(seed: int = 1) -> tuple[Network, tuple[PortPlace, ...], LayoutRules]:
+    """Sixteen masses, two sensors, one actuator (in the corner of the square)."""
+    network = synthetic(16, 22, 3, 3, 3, 2, 1, seed)
+    ports = (MAZE_PORTS[0], MAZE_PORTS[1], PortPlace("A[0]", "bottom", 39, 0, (0.0, -1.0)))
+    return network, ports, pom_rules(network)

@@ -2,26 +2,15 @@
 
 from collections.abc import Callable
 from dataclasses import replace
-from functools import cache
 
 import pytest
 
-from mdlcad.mechanics.rules import LayoutRules
-from mdlcad.network.model import Network
 from mdlcad.placement.placement import Placement
-from mdlcad.routing import place_and_route
 from mdlcad.routing.check import RULES, check_layout
 from mdlcad.routing.layout import EndKind, Layout, Rung, Side, Trunk
-from tests.placement.networks import SQUARE, small
+from tests.routing.made import good
 
 Made = tuple[Placement, Layout]
-
-
-@cache
-def good() -> tuple[Network, LayoutRules, Placement, Layout]:
-    network, ports, rules = small()
-    placement, layout = place_and_route(network, SQUARE, ports, rules, 1)
-    return network, rules, placement, layout
 
 
 def swap(items: tuple, index: int, item: object) -> tuple:
@@ -87,7 +76,7 @@ def lost_post(placement: Placement, layout: Layout) -> Made:
 
 def rung_over_post(placement: Placement, layout: Layout) -> Made:
     """A bar of another net on a plate above a bias leaf, across its post."""
-    network, rules, _, _ = good()
+    _, rules, _, _ = good()
     bias = next(leaf for leaf in layout.biases if leaf.plate != rules.link_plates[-1])
     i = first(layout.rungs, lambda rung: rung.net != bias.mass and EndKind.TAB not in (rung.left.kind, rung.right.kind))
     rung = layout.rungs[i]
