@@ -20,6 +20,7 @@ _HIDDEN = str.maketrans({"#": "\x01", ";": "\x02"})
 _SHOWN = str.maketrans({"\x01": "#", "\x02": ";"})
 # Sets whose order the writer takes from memory.
 _UNORDERED = "MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION"
+_OCCURRENCE = "NEXT_ASSEMBLY_USAGE_OCCURRENCE"
 # Merged when equal: geometry and style carry no identity of their own. Topology (vertices, edges, faces) is left
 # alone, since two solids that touch must stay two solids.
 _MERGED = frozenset(
@@ -66,6 +67,7 @@ def canonical_step(text: str) -> str:
     if not mark or not end_mark:
         raise SignoffError("the STEP writer gave a file without a DATA section")
     entities = _entities(data)
+    _number_occurrences(entities)
     digests = _digests(entities)
     for entity in entities.values():
         if entity.kind == _UNORDERED:
@@ -99,6 +101,13 @@ def _entities(data: str) -> dict[int, _Entity]:
         kind = pieces[0].partition("(")[0]
         found[int(label[1:])] = _Entity(kind, pieces[0::2], [int(piece) for piece in pieces[1::2]])
     return found
+
+
+def _number_occurrences(entities: dict[int, _Entity]) -> None:
+    """Number the assembly's members from 1: the writer goes on counting from the file it wrote before."""
+    members = (entity for entity in entities.values() if entity.kind == _OCCURRENCE)
+    for number, entity in enumerate(members, start=1):
+        entity.texts[0] = re.sub(r"^(\w+\(')\d+'", rf"\g<1>{number}'", entity.texts[0])
 
 
 def _tight(value: str) -> str:

@@ -60,16 +60,14 @@ def build(request: Request, say: Callable[[str], None]) -> tuple[Path, list[str]
     """
     steps, loaded = _chosen(request.first, request.last)
     library, process = load_library(request.cells), load_process(request.process)
-    state, old = State(), request.place
+    state = State()
     source: Path | None = request.source
     if loaded:
-        old = old or request.source
-        state = _load(old, loaded)
+        state = _load(request.source, loaded)
         source = None
-        name = need(state.device).name
+        place = request.place or request.source
     else:
-        name = _design_name(request.source)
-    place = request.place or (old if loaded and old else Path("exports") / name)
+        place = request.place or Path("exports") / _design_name(request.source)
     records: list[StageRecord] = []
     with new_folder(place) as folder:
         job = Job(source, library, process, request.seed, folder, request.workers)

@@ -69,6 +69,12 @@ def test_the_same_bytes_in_a_fresh_process_with_other_hashes():
     assert len(seen) == 1
 
 
+def test_the_same_bytes_whatever_was_written_before():
+    first = step_assembly("device", few_bodies())
+    step_assembly("other", few_bodies()[:2])
+    assert step_assembly("device", few_bodies()) == first
+
+
 def test_canonical_step_forgets_numbering_and_the_order_of_styles():
     head = "ISO-10303-21;\nHEADER;\nENDSEC;\nDATA;\n"
     tail = "ENDSEC;\nEND-ISO-10303-21;\n"

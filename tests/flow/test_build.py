@@ -1,0 +1,136 @@
+"""A small program all the way: text to files, verified from the files alone, and every tampering noticed."""
+
+import json
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from mdlcad.cli import FAILS, HOLDS, UNUSABLE, main
+
+ROOT = Path(__file__).resolve().parents[2]
+VOTER = ROOT / "examples" / "voter.mdl"
+PLATES = ["base", "shims", "clock-2", "clock-1", "clock-0", "unit", "V", "H0", "H1", "H2", "H3", "cover"]
+
+
+@pytest.fixture(scope="module")
+def built(tmp_path_factory) -> Path:
+    folder = tmp_path_factory.mktemp("build") / "voter"
+    assert main(["build", str(VOTER), "-o", str(folder)]) == HOLDS
+    return folder
+
+
+@pytest.fixture
+def copy(built: Path, tmp_path: Path) -> Path:
+    shutil.copytree(built, tmp_path / "copy")
+    return tmp_path / "copy"
+
+
+def report(folder: Path) -> dict:
+    return json.loads((folder / "report.json").read_text())
+
+
+def test_the_report_has_the_contract_s_keys_and_says_that_all_holds(built):
+    found = report(built)
+    assert found["design"] == "voter"
+    assert found["behaviour"] == {
+        "transitions_total": 8,
+        "transitions_checked": 8,
+        "mismatches": 0,
+        "exhaustive": True,
+    }
+    assert found["extracted"] == found["behaviour"]
+    assert found["lvs"] == {"matched": True, "differences": []}
+    assert found["drc"]["unrealised_coupling"] == 0
+    assert all(count == 0 for rule, count in found["drc"].items() if rule != "carrier_stiffness")
+    assert found["plates"] == PLATES
+    assert len(found["extent_mm"]) == 3
+    assert all(len(stage["checksum"]) == 64 for stage in found["stages"])
+    assert {"cells", "process", "seed", "version", "masses", "couplings", "gates", "tiles"} <= set(found)
+
+
+def test_every_promised_file_is_there_and_hashed(built):
+    files = report(built)["files"]
+    wanted = [f"{name}.json" for name in ("device", "netlist", "network", "placement", "layout")]
+    wanted += ["voter.step", "voter.3mf", "views/stack.png"]
+    wanted += [f"plates/{plate}.{kind}" for plate in PLATES for kind in ("step", "stl", "dxf", "svg")]
+    wanted += [f"views/plate-{plate}.png" for plate in PLATES if plate != "shims"]
+    assert set(wanted) <= set(files)
+    on_disk = {path.relative_to(built).as_posix() for path in built.rglob("*") if path.is_file()}
+    assert on_disk == set(files) | {"report.json"}
+
+
+def test_verify_signs_the_untouched_build_off(built, capsys):
+    assert main(["verify", str(built)]) == HOLDS
+    said = capsys.readouterr().out
+    assert all(
+        f"{name:<11} holds" in said for name in ("hashes", "behaviour", "drc", "step", "stl", "lvs", "extracted")
+    )
+
+
+def test_verify_names_a_changed_file(copy, capsys):
+    path = copy / "plates" / "unit.stl"
+    data = bytearray(path.read_bytes())
+    data[200] ^= 1
+    path.write_bytes(bytes(data))
+    assert main(["verify", str(copy)]) == FAILS
+    assert "plates/unit.stl" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("name", ["network.json", "voter.step", "report.json"])
+def test_verify_names_a_missing_file(copy, capsys, name):
+    (copy / name).unlink()
+    assert main(["verify", str(copy)]) == UNUSABLE
+    assert name in capsys.readouterr().err
+
+
+def rehash(folder: Path, name: str) -> None:
+    """Make the report vouch for a changed file, so that the checks behind the hashes are reached."""
+    from mdlcad.artefact import checksum
+
+    found = report(folder)
+    found["files"][name] = checksum((folder / name).read_bytes())
+    (folder / "report.json").write_text(json.dumps(found))
+
+
+def test_verify_finds_a_flipped_coupling_behind_a_right_hash(copy, capsys):
+    network = json.loads((copy / "network.json").read_text())
+    network["couplings"][0]["strength"] *= -1
+    (copy / "network.json").write_text(json.dumps(network))
+    rehash(copy, "network.json")
+    assert main(["verify", str(copy)]) == FAILS
+    assert "behaviour" in capsys.readouterr().err
+
+
+def test_verify_finds_another_device_in_the_step_file(copy, capsys):
+    (copy / "voter.step").write_bytes((copy / "plates" / "unit.step").read_bytes())
+    rehash(copy, "voter.step")
+    assert main(["verify", str(copy)]) == FAILS
+    said = capsys.readouterr().err
+    assert "coupling missing" in said
+    assert "the STEP file holds it 0 times" in said
+
+
+def test_the_same_bytes_in_a_fresh_process_with_other_hashes_and_one_worker(built, tmp_path):
+    again = tmp_path / "again"
+    subprocess.run(
+        [sys.executable, "-m", "mdlcad.cli", "build", str(VOTER), "-o", str(again), "--jobs", "1"],
+        env={"PYTHONHASHSEED": "4711", "PATH": "/usr/bin:/bin"},
+        check=True,
+        capture_output=True,
+        timeout=300,
+    )
+    first, second = report(built), report(again)
+    assert first["files"] == second["files"]
+    for found in (first, second):
+        for stage in found["stages"]:
+            del stage["seconds"]
+    assert first == second
+
+
+def test_a_build_can_start_again_from_a_stage(built, tmp_path):
+    folder = tmp_path / "from"
+    assert main(["build", str(built), "--from", "sizing", "--to", "sizing", "-o", str(folder)]) == HOLDS
+    assert (folder / "sizing.json").read_bytes() == (built / "sizing.json").read_bytes()
