@@ -13,7 +13,7 @@ from mdlcad.artefact import checksum, to_json, write_atomic
 from mdlcad.errors import SignoffError, UsageError
 from mdlcad.flow.folder import REPORT, load, new_folder
 from mdlcad.flow.result import failures, make_report
-from mdlcad.flow.state import Job, State, need
+from mdlcad.flow.state import Job, State
 from mdlcad.flow.steps import STEPS, Step
 from mdlcad.language import Device
 from mdlcad.mapping import load_library
