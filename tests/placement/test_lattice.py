@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from itertools import pairwise
 
 import pytest
 from shapely import Point, Polygon, box
@@ -58,8 +59,8 @@ def test_no_two_slots_overlap(setting: Setting) -> None:
     _, _, rules, found = setting
     for lattice in found:
         columns, rows = lattice.column_x, lattice.row_y
-        assert all(b - a >= rules.column_pitch - 1e-6 for a, b in zip(columns, columns[1:], strict=False))
-        assert all(b - a >= rules.row_pitch - 1e-5 for a, b in zip(rows, rows[1:], strict=False))
+        assert all(b - a >= rules.column_pitch - 1e-6 for a, b in pairwise(columns))
+        assert all(b - a >= rules.row_pitch - 1e-5 for a, b in pairwise(rows))
 
 
 def test_a_slanted_roof_takes_slots_away() -> None:
@@ -138,6 +139,6 @@ def test_a_boundary_that_is_all_rim_has_no_lattice() -> None:
 
 
 def test_more_masses_than_slots_have_no_lattice(setting: Setting) -> None:
-    network, boundary, rules, found = setting
+    _, boundary, rules, found = setting
     most = max(len(lattice.column_x) * len(lattice.row_y) for lattice in found)
     assert lattices(boundary, found[0].ports, rules, SCALE, 4 * most) == ()
