@@ -31,7 +31,7 @@ SLOT, BIAS_SIDE = 0, 1
 # The small functions take single rows, not the whole state: numba passes every array of a tuple by value.
 
 
-@numba.njit(cache=True, forceinline=True)
+@numba.njit(cache=True, error_model="numpy", forceinline=True)
 def _row_cost(t: Ints, is_open: int, plates: int) -> float:
     """Penalty of one row of a channel from its tallies."""
     straight = t[STRAIGHT]
@@ -45,7 +45,7 @@ def _row_cost(t: Ints, is_open: int, plates: int) -> float:
     return HARD * cost
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, error_model="numpy")
 def _piece(
     t: Ints,
     items: Ints,
@@ -90,7 +90,7 @@ def _piece(
     return cost + _row_cost(t, is_open, plates)
 
 
-@numba.njit(cache=True, forceinline=True)
+@numba.njit(cache=True, error_model="numpy", forceinline=True)
 def _half(p: Problem, s: State, mass: int, side: int, sign: int) -> float:
     """One net's pieces in the channel left (0) or right (1) of its source."""
     slot = s.mass[mass, SLOT]
@@ -177,7 +177,7 @@ def _half(p: Problem, s: State, mass: int, side: int, sign: int) -> float:
     return cost
 
 
-@numba.njit(cache=True, forceinline=True)
+@numba.njit(cache=True, error_model="numpy", forceinline=True)
 def _tracks(p: Problem, s: State, channel: int) -> float:
     """Penalty of a channel's trunks: how far past their windows the best-first packing from the left pushes them.
 
@@ -229,12 +229,12 @@ def _tracks(p: Problem, s: State, channel: int) -> float:
     return cost
 
 
-@numba.njit(cache=True, forceinline=True)
+@numba.njit(cache=True, error_model="numpy", forceinline=True)
 def _outside(p: Problem, channel: int, row: int, x: float) -> bool:
     return bool(x < p.limits[channel, row, 0] - 1e-6 or x > p.limits[channel, row, 1] + 1e-6)
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, error_model="numpy")
 def _bias(p: Problem, s: State, mass: int, sign: int) -> float:
     slot = s.mass[mass, SLOT]
     column, row = p.slot[slot, 0], p.slot[slot, 1]
@@ -250,7 +250,7 @@ def _bias(p: Problem, s: State, mass: int, sign: int) -> float:
     return cost
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, error_model="numpy")
 def _tally(p: Problem, s: State, nets: Ints, n: int, a: int, b: int, sign: int) -> float:
     """Add or remove the first ``n`` of ``nets`` and the bias leaves of masses a and b (or -1)."""
     cost = 0.0
@@ -264,7 +264,7 @@ def _tally(p: Problem, s: State, nets: Ints, n: int, a: int, b: int, sign: int) 
     return cost
 
 
-@numba.njit(cache=True, forceinline=True)
+@numba.njit(cache=True, error_model="numpy", forceinline=True)
 def _draw(random: npt.NDArray[np.uint64]) -> float:
     """xorshift64*: uniform in [0, 1)."""
     x = random[0]
@@ -275,7 +275,7 @@ def _draw(random: npt.NDArray[np.uint64]) -> float:
     return float((x * np.uint64(2685821657736338717)) >> np.uint64(11)) / 9007199254740992.0
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, error_model="numpy")
 def _gather(p: Problem, mass: int, nets: Ints, n: int) -> int:
     """Append the nets that move with ``mass``: its own and those that drive it."""
     for i in range(p.mass[mass, 1] - 1, p.mass[mass + 1, 1]):
@@ -290,7 +290,7 @@ def _gather(p: Problem, mass: int, nets: Ints, n: int) -> int:
     return n
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, error_model="numpy")
 def _span(p: Problem, s: State, nets: Ints, n: int) -> float:
     """Penalty of targets and tabs that are out of reach of their sources."""
     far = 0
@@ -305,7 +305,7 @@ def _span(p: Problem, s: State, nets: Ints, n: int) -> float:
     return HARD * far
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, error_model="numpy")
 def _passes(p: Problem, s: State, wire: float) -> float:
     """Penalty of tabs that pass over hub columns: their length, and the masses in their way."""
     cost = 0.0
@@ -322,7 +322,7 @@ def _passes(p: Problem, s: State, wire: float) -> float:
     return cost
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, error_model="numpy")
 def _swap(s: State, a: int, slot: int) -> None:
     old = s.mass[a, SLOT]
     b = s.mass_at[slot]
@@ -333,7 +333,7 @@ def _swap(s: State, a: int, slot: int) -> None:
         s.mass[b, SLOT] = old
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, error_model="numpy")
 def _propose(p: Problem, s: State, mass: int, random: npt.NDArray[np.uint64]) -> int:
     """A slot: mostly one near a mass that ``mass`` is coupled to, else any."""
     outs = p.mass[mass + 1, 0] - p.mass[mass, 0]
@@ -352,7 +352,7 @@ def _propose(p: Problem, s: State, mass: int, random: npt.NDArray[np.uint64]) ->
     return int(_draw(random) * len(p.slot))
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, error_model="numpy")
 def _hard(p: Problem, s: State, tracks: Floats, all_masses: Ints) -> float:
     """The part of the cost that breaks rules, counted afresh; ``tracks`` are the channels' penalties."""
     cost = np.sum(tracks) + _span(p, s, all_masses, len(all_masses)) + _passes(p, s, 0.0)
@@ -368,7 +368,7 @@ def _hard(p: Problem, s: State, tracks: Floats, all_masses: Ints) -> float:
     return cost
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, error_model="numpy")
 def anneal(
     p: Problem, s: State, random: npt.NDArray[np.uint64], moves: int, hot: float, cold: float, fixed: bool
 ) -> float:

@@ -28,7 +28,10 @@ SLACK = 1.1
 """Slots a mass: with fewer, annealing has hardly room to move in."""
 SCREEN = 1500
 """Moves a mass of the short anneal that ranks the lattices of a scale."""
-HOPELESS = 6 * HARD
+HOPELESS = 5 * HARD
+"""A short anneal that leaves more than this is not worth a full one."""
+FAR = 2 * HARD
+"""A full anneal that leaves more than this is not worth another seed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,6 +117,8 @@ class _Search:
             for offset in range(effort.seeds if cost <= HOPELESS else 0):
                 result = place(self.network, choices[index], self.rules, self.seed + offset)
                 best = min(best, result.cost)
+                if result.cost > FAR:
+                    break
                 if result.cost > 0:
                     continue
                 try:
