@@ -197,7 +197,8 @@ def _rules(
         bias_offsets={item.mass: item.offset for item in biases},
         eye_radius=eye_radius(process),
         bias_ends={
-            item.mass: _up(hub_half + item.leaf.reach + eye_radius(process) + max(0.0, item.leaf.slot[1]))
+            # the slot is as long as the eye slides, and slides by its own length
+            item.mass: _up(hub_half + item.leaf.reach + eye_radius(process) + item.leaf.slot[1] - item.leaf.slot[0])
             for item in biases
         },
     )
