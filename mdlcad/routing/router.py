@@ -13,8 +13,9 @@ from mdlcad.placement.placement import Placement
 from mdlcad.placement.placer import choose_sides
 from mdlcad.routing.assemble import assemble
 from mdlcad.routing.channel import ChannelRoute, solve
+from mdlcad.routing.gather import channels
 from mdlcad.routing.layout import Layout
-from mdlcad.routing.pieces import Channel, channels
+from mdlcad.routing.pieces import Channel
 
 SIDE_TRIES = 3
 """Choices of channel sides and bias sides to try on one placement."""
