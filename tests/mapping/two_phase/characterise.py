@@ -1,11 +1,14 @@
-"""Measures what docs/two_phase.md says of the parameter sets: ``python -m tests.mapping.two_phase.characterise [SET...]``.
+"""Measures what docs/two_phase.md says of the parameter sets, which takes some minutes a set.
 
-Takes some minutes a set. Loops of 4 and 5 stand for those of 5 and 12: the same decisions in a third of the time.
+    python -m tests.mapping.two_phase.characterise [SET...]
+
+Loops of 4 and 5 stand for those of 5 and 12: the same decisions in a third of the time.
 """
 
 from __future__ import annotations
 
 import sys
+
 from mdlcad.mapping.two_phase import map_two_phase
 from mdlcad.proof.reference import build_reference
 from mdlcad.proof.spread import estimate_yield
