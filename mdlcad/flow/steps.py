@@ -12,12 +12,13 @@ from dataclasses import dataclass, replace
 from shapely import Polygon
 
 from mdlcad.artefact import to_json
-from mdlcad.errors import SignoffError
+from mdlcad.errors import SignoffError, UsageError
 from mdlcad.flow.state import Job, State, need
 from mdlcad.language import Actuator, Device, Sensor, read_device
 from mdlcad.mapping import map_netlist
 from mdlcad.mechanics import size
 from mdlcad.mechanics.carrier import carrier_stiffnesses
+from mdlcad.network.model import CouplingKind
 from mdlcad.parts import build_parts
 from mdlcad.parts.body import bodies_bytes
 from mdlcad.placement.ports import PortPlace
@@ -79,7 +80,15 @@ def _prove(job: Job, state: State, progress: Progress) -> State:
 
 
 def _size(job: Job, state: State, progress: Progress) -> State:
-    return replace(state, sizing=size(need(state.network), job.process, need(state.proof).peaks))
+    network = need(state.network)
+    clocked = [item.name for item in network.couplings if item.kind is not CouplingKind.LINEAR or item.d1]
+    if clocked:
+        raise UsageError(
+            f"the cell library {network.cells} couples {len(clocked)} pairs of masses by clocked or latching springs "
+            f"(the first is {clocked[0]}), for which there are no parts yet; build with --to proof, or with --cells "
+            "parametron"
+        )
+    return replace(state, sizing=size(network, job.process, need(state.proof).peaks))
 
 
 def _place_and_route(job: Job, state: State, progress: Progress) -> State:

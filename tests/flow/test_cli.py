@@ -81,3 +81,10 @@ def test_build_stops_after_the_network_when_told(tmp_path, capsys):
 def test_listings(command, capsys):
     assert main(command) == HOLDS
     assert capsys.readouterr().out.strip()
+
+
+def test_a_library_without_parts_says_so_and_writes_nothing(tmp_path, capsys):
+    voter = ROOT / "examples" / "voter.mdl"
+    assert main(["build", str(voter), "--cells", "two_phase", "-o", str(tmp_path / "out")]) == UNUSABLE
+    assert "no parts yet" in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
