@@ -21,7 +21,8 @@ def write_files(
 ) -> tuple[str, ...]:
     """Write NAME.step, NAME.3mf and plates/PLATE.{step,stl,dxf,svg}; the paths written, relative to ``folder``.
 
-    STEP files take most of the time; with more than one worker they are made in processes beside this one.
+    STEP files take most of the time; with more than one worker the device's is made in a process beside this one, which
+    makes those of the plates meanwhile.
 
     Raises:
         SignoffError: a file read back does not hold what it should.
@@ -36,10 +37,9 @@ def write_files(
 
     plates = plates_of(bodies)
     # a child that was forked would share this one's CAD kernel
-    pool = ProcessPoolExecutor(min(workers, 2), multiprocessing.get_context("spawn")) if workers > 1 else nullcontext()
+    pool = ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) if workers > 1 else nullcontext()
     with pool as executor:
         whole = _started(executor, design, bodies)
-        parts = {plate: _started(executor, plate, members) for plate, members in plates.items()}
         progress("3MF")
         put(f"{design}.3mf", threemf_device(design, bodies))
         for plate, members in plates.items():
@@ -47,9 +47,7 @@ def write_files(
             put(f"plates/{plate}.stl", stl_plate(plate, members))
             put(f"plates/{plate}.svg", svg_plate(plate, members))
             put(f"plates/{plate}.dxf", dxf_plate(members))
-        for plate, started in parts.items():
-            progress(f"STEP of plate {plate}")
-            put(f"plates/{plate}.step", started())
+            put(f"plates/{plate}.step", step_assembly(plate, members))
         progress("STEP of the device")
         put(f"{design}.step", whole())
     return tuple(sorted(written))
