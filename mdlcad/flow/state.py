@@ -9,9 +9,9 @@ from typing import TypeVar
 from mdlcad.language import Device
 from mdlcad.mapping import Library
 from mdlcad.mechanics import Process, Sizing
-from mdlcad.mechanics.carrier import CarrierStiffness
 from mdlcad.network.model import Network
 from mdlcad.parts.body import Body
+from mdlcad.parts.stiffness import CarrierStiffness
 from mdlcad.placement.placement import Placement
 from mdlcad.proof.outcome import Proof
 from mdlcad.routing.layout import Layout

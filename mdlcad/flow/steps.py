@@ -17,10 +17,10 @@ from mdlcad.flow.state import Job, State, need
 from mdlcad.language import Actuator, Device, Sensor, read_device
 from mdlcad.mapping import map_netlist
 from mdlcad.mechanics import size
-from mdlcad.mechanics.carrier import carrier_stiffnesses
 from mdlcad.network.model import CouplingKind
 from mdlcad.parts import build_parts
 from mdlcad.parts.body import bodies_bytes
+from mdlcad.parts.stiffness import carrier_stiffnesses
 from mdlcad.placement.ports import PortPlace
 from mdlcad.proof.prove import prove
 from mdlcad.proof.reference import build_reference

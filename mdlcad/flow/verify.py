@@ -14,10 +14,10 @@ from mdlcad.export.mesh import check_stl
 from mdlcad.flow.folder import REPORT, load
 from mdlcad.language import Device
 from mdlcad.mechanics import Process, Sizing
-from mdlcad.mechanics.carrier import carrier_stiffnesses
 from mdlcad.network.model import Network
 from mdlcad.parts import build_parts
 from mdlcad.parts.plates import plates_of
+from mdlcad.parts.stiffness import carrier_stiffnesses
 from mdlcad.placement.placement import Placement
 from mdlcad.proof.prove import prove
 from mdlcad.proof.reference import build_reference

@@ -7,12 +7,12 @@ from dataclasses import replace
 
 from shapely import Polygon
 
-from mdlcad.mechanics.carrier import rung_width
 from mdlcad.parts import palette
 from mdlcad.parts.body import Body, BodyKind
 from mdlcad.parts.leaf import hub_block
 from mdlcad.parts.shapes import box, cut, join, only, pieces, square, strip
 from mdlcad.parts.stack import Hub, Stack, mass_ref
+from mdlcad.parts.stiffness import rung_width
 from mdlcad.parts.unit import hub_pin_x
 from mdlcad.routing.layout import EndKind, Rung, Side, Tab, Trunk
 

@@ -7,8 +7,8 @@ from pathlib import Path
 
 from mdlcad.artefact import checksum
 from mdlcad.mechanics import Sizing
-from mdlcad.mechanics.carrier import CarrierStiffness
 from mdlcad.parts.body import Body
+from mdlcad.parts.stiffness import CarrierStiffness
 from mdlcad.proof.outcome import Proof
 from mdlcad.report.report import Behaviour, Mechanics
 

@@ -8,10 +8,10 @@ from shapely import Polygon
 
 from mdlcad.errors import SignoffError
 from mdlcad.mechanics import Process, Sizing
-from mdlcad.mechanics.carrier import CarrierStiffness
 from mdlcad.network.model import Network
 from mdlcad.parts.body import Body
 from mdlcad.parts.plates import plates_of
+from mdlcad.parts.stiffness import CarrierStiffness
 from mdlcad.placement.placement import Placement
 from mdlcad.routing.check import check_layout
 from mdlcad.routing.layout import Layout

@@ -5,8 +5,8 @@ import pytest
 from mdlcad.artefact import from_json, to_json
 from mdlcad.errors import UsageError
 from mdlcad.mechanics import Process, Sizing, load_process, size
-from mdlcad.mechanics.carrier import carrier_findings, carrier_stiffnesses
 from mdlcad.mechanics.unit import beam_strain, unit_law
+from mdlcad.parts.stiffness import carrier_findings, carrier_stiffnesses
 from tests.parts.device import Device, small_device, small_network
 
 
