@@ -1,0 +1,45 @@
+"""Kinds of argument, what every command says with, and what its exit code means."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+
+HOLDS, FAILS, UNUSABLE = 0, 1, 2
+
+Commands = argparse._SubParsersAction  # the only name argparse gives what add_subparsers returns
+
+
+def seed(text: str) -> int:
+    """A seed."""
+    value = int(text)
+    if not 0 <= value < 2**31:
+        raise argparse.ArgumentTypeError("a seed is a whole number from 0 to 2147483647")
+    return value
+
+
+def jobs(text: str) -> int:
+    """A number of processors."""
+    value = int(text)
+    if value < 1:
+        raise argparse.ArgumentTypeError("at least one processor")
+    return value
+
+
+def say(line: str) -> None:
+    """One line to the user, at once."""
+    print(line, flush=True)
+
+
+def show(artefact: object) -> None:
+    """An artefact as its JSON."""
+    from mdlcad.artefact import to_json
+
+    sys.stdout.write(to_json(artefact).decode())
+
+
+def verdict(broken: list[str]) -> int:
+    """Say what does not hold; the exit code."""
+    for words in broken:
+        print(f"mdlcad: does not hold: {words}", file=sys.stderr)
+    return FAILS if broken else HOLDS
