@@ -135,8 +135,7 @@ def _run(step: Step, job: Job, state: State, say: Callable[[str], None]) -> tupl
     if step.artefact is not None:
         data = step.artefact(state)
         digest = checksum(data)
-        if step.stored:
-            write_atomic(job.folder / f"{step.name}.json", data)
+        write_atomic(job.folder / f"{step.name}.json", data)
     else:
         fresh = sorted(set(state.files) - before)
         digest = checksum("".join(f"{name} {checksum((job.folder / name).read_bytes())}\n" for name in fresh).encode())

@@ -11,6 +11,7 @@ from mdlcad.errors import UsageError
 from mdlcad.language import Device
 from mdlcad.mechanics import Sizing
 from mdlcad.network.model import Network
+from mdlcad.parts.store import Parts
 from mdlcad.placement.placement import Placement
 from mdlcad.proof.outcome import Proof
 from mdlcad.report.report import Report
@@ -28,6 +29,7 @@ ARTEFACTS: dict[str, Any] = {
     "sizing": Sizing,
     "placement": Placement,
     "layout": Layout,
+    "parts": Parts,
     "drc": DesignRules,
     "extraction": tuple[LvsResult, Proof],
     "report": Report,

@@ -19,8 +19,8 @@ from mdlcad.mapping import map_netlist
 from mdlcad.mechanics import size
 from mdlcad.network.model import CouplingKind
 from mdlcad.parts import build_parts
-from mdlcad.parts.body import bodies_bytes
 from mdlcad.parts.stiffness import carrier_stiffnesses
+from mdlcad.parts.store import Parts, records_of
 from mdlcad.placement.ports import PortPlace
 from mdlcad.proof.prove import prove
 from mdlcad.proof.reference import build_reference
@@ -41,8 +41,7 @@ class Step:
         needs, makes: fields of ``State``.
         run: does it. Raises InputError or UsageError for bad input, SignoffError if what it made does not hold.
         summary: one line about what came out.
-        artefact: the bytes of what it made; None if it made files of its own.
-        stored: whether those bytes are the file NAME.json of the build (drawn bodies are kept as STEP instead).
+        artefact: the bytes of what it made, kept as NAME.json; None if it made files of its own.
     """
 
     name: str
@@ -51,7 +50,6 @@ class Step:
     run: Callable[[Job, State, Callable[[str], None]], State]
     summary: Callable[[State], str]
     artefact: Callable[[State], bytes] | None
-    stored: bool = True
 
 
 Progress = Callable[[str], None]
@@ -251,8 +249,7 @@ STEPS: tuple[Step, ...] = (
         ("bodies", "carriers"),
         _build_parts,
         lambda s: f"{len(need(s.bodies))} bodies",
-        lambda s: bodies_bytes(need(s.bodies)),
-        stored=False,
+        lambda s: to_json(Parts(records_of(need(s.bodies)), s.carriers)),
     ),
     Step(
         "drc",

@@ -18,6 +18,7 @@ from mdlcad.network.model import Network
 from mdlcad.parts import build_parts
 from mdlcad.parts.plates import plates_of
 from mdlcad.parts.stiffness import carrier_stiffnesses
+from mdlcad.parts.store import Parts, records_of
 from mdlcad.placement.placement import Placement
 from mdlcad.proof.prove import prove
 from mdlcad.proof.reference import build_reference
@@ -58,6 +59,8 @@ def verify(folder: Path, workers: int, say: Callable[[str], None]) -> list[str]:
     placement, layout = load(folder, "placement.json", Placement), load(folder, "layout.json", Layout)
     bodies = build_parts(network, placement, layout, sizing, process, Polygon(placement.boundary))
     carriers = carrier_stiffnesses(network, placement, layout, sizing, process)
+    stored = load(folder, "parts.json", Parts)
+    step("parts", [] if stored == Parts(records_of(bodies), carriers) else ["parts.json: not what the layout makes"])
     rules = check_geometry(network, sizing, placement, layout, bodies, carriers, process)
     step("drc", [f"{item.rule}: {', '.join(item.bodies)}: {item.message}" for item in rules.errors])
     found = read_step(folder / f"{device.name}.step")

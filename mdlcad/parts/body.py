@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
-import shapely
 from shapely import Polygon
 
 
@@ -59,16 +57,3 @@ class Body:
     colour: str
     assembled: Polygon | None = None
     envelope: Polygon | None = None
-
-
-def bodies_bytes(bodies: Sequence[Body]) -> bytes:
-    """All that bodies are, as bytes to take a checksum of."""
-    parts = []
-    for body in bodies:
-        shapes = (body.section, body.assembled, body.envelope)
-        parts.append(
-            f"{body.name}|{body.kind}|{body.plate}|{body.z!r}|{body.thickness!r}|{body.throw!r}|"
-            f"{body.moves_with!r}|{body.colour}|".encode()
-        )
-        parts.extend(shapely.to_wkb(shape) if shape is not None else b"-" for shape in shapes)
-    return b"\n".join(parts)
