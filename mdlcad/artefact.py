@@ -14,6 +14,8 @@ from typing import Any, TypeVar
 
 import msgspec
 
+from mdlcad.errors import UsageError
+
 T = TypeVar("T")
 
 
@@ -30,6 +32,27 @@ def from_json(data: bytes, kind: type[T]) -> T:
         msgspec.DecodeError: the bytes are not JSON.
     """
     return msgspec.json.decode(data, type=kind)
+
+
+def load(folder: Path, name: str, kind: type[T]) -> T:
+    """The artefact ``name`` (a file name) of a build folder.
+
+    Raises:
+        UsageError: the file is missing, truncated, or not of the shape of ``kind``; the message names it.
+    """
+    path = folder / name
+    try:
+        return from_json(path.read_bytes(), kind)
+    except FileNotFoundError:
+        raise UsageError(f"{path}: is missing from the build; build it again") from None
+    except IsADirectoryError:
+        raise UsageError(f"{path}: is a folder where a file should be; build it again") from None
+    except OSError as problem:
+        raise UsageError(f"{path}: cannot be read: {problem.strerror}") from None
+    except msgspec.ValidationError as problem:
+        raise UsageError(f"{path}: does not have the shape of this artefact ({problem}); build it again") from None
+    except (msgspec.DecodeError, RecursionError) as problem:
+        raise UsageError(f"{path}: is not whole JSON ({problem}); build it again") from None
 
 
 def checksum(data: bytes) -> str:

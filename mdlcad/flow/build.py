@@ -9,9 +9,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from mdlcad import __version__
-from mdlcad.artefact import checksum, to_json, write_atomic
+from mdlcad.artefact import checksum, load, to_json, write_atomic
 from mdlcad.errors import SignoffError, UsageError
-from mdlcad.flow.folder import REPORT, load, new_folder
+from mdlcad.flow.folder import REPORT, new_folder
 from mdlcad.flow.result import failures, make_report
 from mdlcad.flow.state import Job, State
 from mdlcad.flow.steps import STEPS, Step

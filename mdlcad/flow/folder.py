@@ -1,4 +1,4 @@
-"""Build folders: filled beside their place, then moved there in one step; and read back."""
+"""Build folders: filled beside their place, then moved there in one step."""
 
 from __future__ import annotations
 
@@ -8,14 +8,9 @@ import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TypeVar
 
-import msgspec
-
-from mdlcad.artefact import from_json
 from mdlcad.errors import UsageError
 
-T = TypeVar("T")
 REPORT = "report.json"
 _AT_FDCWD = -100
 _RENAME_EXCHANGE = 2
@@ -73,22 +68,3 @@ def _exchange(a: Path, b: Path) -> bool:
     if call is None:
         return False
     return bool(call(_AT_FDCWD, os.fsencode(a), _AT_FDCWD, os.fsencode(b), _RENAME_EXCHANGE) == 0)
-
-
-def load(folder: Path, name: str, kind: type[T]) -> T:
-    """The artefact ``name`` (a file name) of a build folder.
-
-    Raises:
-        UsageError: the file is missing, truncated, or not of the shape of ``kind``; the message names it.
-    """
-    path = folder / name
-    try:
-        return from_json(path.read_bytes(), kind)
-    except FileNotFoundError:
-        raise UsageError(f"{path}: is missing from the build; build it again") from None
-    except IsADirectoryError:
-        raise UsageError(f"{path}: is a folder where a file should be; build it again") from None
-    except msgspec.ValidationError as problem:
-        raise UsageError(f"{path}: does not have the shape of this artefact ({problem}); build it again") from None
-    except msgspec.DecodeError as problem:
-        raise UsageError(f"{path}: is not whole JSON ({problem}); build it again") from None

@@ -8,10 +8,10 @@ from pathlib import Path
 import shapely
 from shapely import Polygon
 
-from mdlcad.artefact import checksum
+from mdlcad.artefact import checksum, load
 from mdlcad.errors import SignoffError, UsageError
 from mdlcad.export.mesh import check_stl
-from mdlcad.flow.folder import REPORT, load
+from mdlcad.flow.folder import REPORT
 from mdlcad.language import Device
 from mdlcad.mechanics import Process, Sizing
 from mdlcad.network.model import Network

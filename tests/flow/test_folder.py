@@ -8,8 +8,9 @@ import time
 
 import pytest
 
+from mdlcad.artefact import load
 from mdlcad.errors import UsageError
-from mdlcad.flow.folder import REPORT, load, new_folder
+from mdlcad.flow.folder import REPORT, new_folder
 from mdlcad.flow.steps import STEPS, check_order
 from mdlcad.report.report import Report
 
