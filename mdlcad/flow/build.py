@@ -12,11 +12,12 @@ from mdlcad import __version__
 from mdlcad.artefact import checksum, load, to_json, write_atomic
 from mdlcad.errors import SignoffError, UsageError
 from mdlcad.flow.folder import REPORT, new_folder
+from mdlcad.flow.plans import steps_with
 from mdlcad.flow.result import failures, make_report
 from mdlcad.flow.state import Job, State
-from mdlcad.flow.steps import STEPS, Step
+from mdlcad.flow.steps import Step
 from mdlcad.language import Device
-from mdlcad.mapping import load_library
+from mdlcad.mapping import CELLS_FILE, Library, MappingRequest, load_library, recorded_library
 from mdlcad.mechanics import Sizing, load_process
 from mdlcad.network.model import Network
 from mdlcad.placement.placement import Placement
@@ -39,11 +40,16 @@ _LOADED: dict[str, type] = {
 
 @dataclass(frozen=True, slots=True)
 class Request:
-    """A build as the command line asks for it; ``first`` and ``last`` are names of steps."""
+    """A build as the command line asks for it; ``first`` and ``last`` are names of steps.
+
+    Attributes:
+        cells: name or path of the cell library; None for the default, or with ``first`` the one in the folder.
+    """
 
     source: Path
     place: Path | None
-    cells: str
+    cells: str | None
+    mapping: MappingRequest
     process: str
     seed: int
     first: str | None
@@ -58,8 +64,8 @@ def build(request: Request, say: Callable[[str], None]) -> tuple[Path, list[str]
         InputError, UsageError: the program or the request cannot be used; nothing was written.
         SignoffError: a stage does not hold and nothing worth keeping was made; nothing was written.
     """
-    steps, loaded = _chosen(request.first, request.last)
-    library, process = load_library(request.cells), load_process(request.process)
+    library, process = _library(request), load_process(request.process)
+    steps, loaded = _chosen(steps_with(library, request.last), request.first, request.last)
     state = State()
     source: Path | None = request.source
     if loaded:
@@ -73,11 +79,13 @@ def build(request: Request, say: Callable[[str], None]) -> tuple[Path, list[str]
         job = Job(source, library, process, request.seed, folder, request.workers)
         # what the build leans on goes with it, so that it can be signed off again elsewhere
         write_atomic(folder / "process.json", to_json(process))
-        for step in STEPS[: len(loaded)]:
+        write_atomic(folder / CELLS_FILE, to_json(library))
+        for step in loaded:
             if step.artefact is not None:
                 data = step.artefact(state)
                 write_atomic(folder / f"{step.name}.json", data)
                 records.append(StageRecord(step.name, 0.0, checksum(data)))
+            step.draw(job, state)
         for step in steps:
             state, record = _run(step, job, state, say)
             records.append(record)
@@ -92,21 +100,36 @@ def _design_name(source: Path) -> str:
     return read_device(source).name
 
 
-def _chosen(first: str | None, last: str | None) -> tuple[tuple[Step, ...], tuple[Step, ...]]:
-    """The steps to run and the steps whose artefacts are loaded instead."""
-    names = [step.name for step in STEPS]
+def _library(request: Request) -> Library:
+    """The library asked for; of a build that starts from a folder, the folder's own if none is."""
+    if request.first is None:
+        return load_library(request.cells or "parametron", request.mapping)
+    if request.cells is not None:
+        return load_library(request.cells, request.mapping)
+    for option in request.mapping.stated():
+        raise UsageError(f"{option}: say of which library, with --cells; or build from the program, without --from")
+    if not request.source.is_dir():
+        raise UsageError(f"{request.source}: no such build folder; --from needs one")
+    return recorded_library(request.source)
+
+
+def _chosen(
+    plan: tuple[Step, ...], first: str | None, last: str | None
+) -> tuple[tuple[Step, ...], tuple[Step, ...]]:
+    """The steps of ``plan`` to run and the steps whose artefacts are loaded instead."""
+    names = [step.name for step in plan]
     for flag, name in (("--from", first), ("--to", last)):
         if name is not None and name not in names:
             raise UsageError(f"{flag} {name}: no such stage; the stages are {', '.join(names)}")
     start = names.index(first) if first else 0
-    stop = names.index(last) + 1 if last else len(STEPS)
+    stop = names.index(last) + 1 if last else len(plan)
     if start >= stop:
         raise UsageError(f"--from {first} comes after --to {last}: nothing to do")
-    for step in STEPS[:start]:
+    for step in plan[:start]:
         if step.name not in _LOADED:
             latest = [name for name in names if name in _LOADED][-1]
             raise UsageError(f"--from {first}: a build can start again from any stage up to the one after {latest}")
-    return STEPS[start:stop], STEPS[:start]
+    return plan[start:stop], plan[:start]
 
 
 def _load(folder: Path, steps: tuple[Step, ...]) -> State:
@@ -136,6 +159,7 @@ def _run(step: Step, job: Job, state: State, say: Callable[[str], None]) -> tupl
         data = step.artefact(state)
         digest = checksum(data)
         write_atomic(job.folder / f"{step.name}.json", data)
+        step.draw(job, state)
     else:
         fresh = sorted(set(state.files) - before)
         digest = checksum("".join(f"{name} {checksum((job.folder / name).read_bytes())}\n" for name in fresh).encode())

@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
+import msgspec
+
+from mdlcad.artefact import load
+from mdlcad.errors import UsageError
 from mdlcad.mapping import library as parametron
 from mdlcad.mapping import mapper
+from mdlcad.mapping.request import MappingRequest
 from mdlcad.mapping.two_phase import TwoPhaseLibrary, liberty, load_two_phase, map_two_phase
 from mdlcad.mapping.two_phase.load import library_kind
 from mdlcad.network.model import Network
@@ -11,16 +18,44 @@ from mdlcad.synthesis.netlist import Netlist
 
 Library = parametron.Library | TwoPhaseLibrary
 
+CELLS_FILE = "cells.json"
+"""In a build folder: the library, with all options of the build."""
 
-def load_library(name_or_path: str) -> Library:
+
+class _Kind(msgspec.Struct):
+    kind: str
+
+
+def load_library(name_or_path: str, request: MappingRequest = MappingRequest()) -> Library:
     """The library of that name in ``cells/``, or the one in the folder or TOML file at that path.
 
     Raises:
-        UsageError: no such library, or its file is not a valid library; names the file and the key.
+        UsageError: no such library, its file is not a valid library, or it does not know what is requested; names the
+            file and the key, or the option.
     """
-    if library_kind(name_or_path) == "two_phase":
-        return load_two_phase(name_or_path)
-    return parametron.load_library(name_or_path)
+    kind = library_kind(name_or_path)
+    if kind == "two_phase":
+        return load_two_phase(name_or_path, request)
+    if kind not in (None, "parametron"):
+        raise UsageError(f"{name_or_path}: kind is '{kind}'; the kinds of cell library are parametron and two_phase")
+    library = parametron.load_library(name_or_path)
+    for option in request.stated():
+        raise UsageError(
+            f"{option}: the cell library {library.name} has no such option (its gates need neither buffers nor a long "
+            "clock, and its file has one set of numbers); leave it out, or use --cells two_phase"
+        )
+    return library
+
+
+def recorded_library(folder: Path) -> Library:
+    """The library of a build folder, as the build wrote it down with all its options.
+
+    Raises:
+        UsageError: the file is missing or is not a library.
+    """
+    if load(folder, CELLS_FILE, _Kind).kind == "two_phase":
+        return load(folder, CELLS_FILE, TwoPhaseLibrary)
+    return load(folder, CELLS_FILE, parametron.Library)
 
 
 def map_netlist(netlist: Netlist, library: Library, effort: mapper.Effort | None = None) -> Network:

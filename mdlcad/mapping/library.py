@@ -5,6 +5,7 @@ from __future__ import annotations
 import tomllib
 from dataclasses import dataclass, fields
 from pathlib import Path
+from typing import Literal
 
 import msgspec
 
@@ -96,6 +97,7 @@ class Library:
     gates: GatesTable
     power_up: PowerUpTable
     characterised: CharacterisedTable
+    kind: Literal["parametron"] = "parametron"
 
     def network_dynamics(self) -> Dynamics:
         """The dynamics of a network made of this library."""
@@ -145,7 +147,7 @@ def _unknown_keys(table: dict[str, object]) -> list[str]:
             unknown += [
                 f"{key}.{inner}" for inner in value if inner not in {field.name for field in fields(tables[key])}
             ]
-        elif key not in ("name", "title", *tables):
+        elif key not in ("kind", "name", "title", *tables):
             unknown.append(key)
     return unknown
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 from mdlcad.network.model import CouplingKind, Dynamics
 
@@ -107,6 +108,7 @@ class TwoPhaseLibrary:
     fan_out: int
     roles: Roles
     cells: tuple[Cell, ...]
+    kind: Literal["two_phase"] = "two_phase"
 
     def cell(self, name: str) -> Cell:
         """The cell called ``name``; KeyError if there is none."""

@@ -11,6 +11,7 @@ import msgspec
 
 from mdlcad.datafolder import find_data
 from mdlcad.errors import UsageError
+from mdlcad.mapping.request import MappingRequest
 from mdlcad.mapping.two_phase.function import truth_table
 from mdlcad.mapping.two_phase.library import (
     AND_TABLE,
@@ -86,21 +87,22 @@ class LibraryData(msgspec.Struct, frozen=True, forbid_unknown_fields=True, renam
     sets: dict[str, dict[str, float]]
 
 
-def load_two_phase(name_or_path: str, parameters: str | None = None) -> TwoPhaseLibrary:
+def load_two_phase(name_or_path: str, request: MappingRequest = MappingRequest()) -> TwoPhaseLibrary:
     """The two-phase library of that name in ``cells/``, or the one in the folder or TOML file at that path.
 
     Args:
-        parameters: the parameter set to use instead of the one that the file names.
+        request: what is wanted otherwise than the file has it.
 
     Raises:
-        UsageError: no such library or parameter set, or the file is not a valid library; names the file and the key.
+        UsageError: no such library or parameter set, the file is not a valid library, or what is requested does not
+            fit it; names the file and the key.
     """
     found = find_data("cells", name_or_path, "")
     path = found / "library.toml" if found.is_dir() else found
     label = f"{path.parent.name}/{path.name}"
     try:
         data = msgspec.convert(tomllib.loads(path.read_text(encoding="utf-8")), LibraryData)
-        return _library(data, parameters or data.default)
+        return _library(data, request)
     except OSError as trouble:
         raise UsageError(f"{label}: cannot be read: {trouble.strerror}") from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as trouble:
@@ -109,7 +111,8 @@ def load_two_phase(name_or_path: str, parameters: str | None = None) -> TwoPhase
         raise UsageError(f"{label}: {trouble}") from None
 
 
-def _library(data: LibraryData, chosen: str) -> TwoPhaseLibrary:
+def _library(data: LibraryData, request: MappingRequest) -> TwoPhaseLibrary:
+    chosen = request.parameters or data.default
     if data.kind != "two_phase":
         raise ValueError(f"kind is '{data.kind}', not 'two_phase'")
     if chosen not in data.sets:
@@ -127,7 +130,7 @@ def _library(data: LibraryData, chosen: str) -> TwoPhaseLibrary:
         name=data.name,
         title=data.title,
         parameters=chosen,
-        options=data.options,
+        options=_options(data.options, request),
         dynamics=dynamics,
         fan_out=data.gates.fan_out,
         roles=data.roles,
@@ -135,6 +138,17 @@ def _library(data: LibraryData, chosen: str) -> TwoPhaseLibrary:
     )
     check_library(library)
     return library
+
+
+def _options(options: Options, request: MappingRequest) -> Options:
+    """``options`` of the file, with what is requested otherwise."""
+    return Options(
+        clock_length=options.clock_length if request.clock_length is None else request.clock_length,
+        clock=options.clock if request.clock is None else request.clock,
+        branching=options.branching if request.branching is None else request.branching,
+        io_gates=options.io_gates if request.io_gates is None else request.io_gates,
+        buffer=options.buffer if request.buffer is None else request.buffer,
+    )
 
 
 def check_library(library: TwoPhaseLibrary) -> None:
@@ -145,7 +159,7 @@ def check_library(library: TwoPhaseLibrary) -> None:
     if library.fan_out < 2:
         raise ValueError("gates.fan_out must be at least 2")
     if library.options.clock_length < 2:
-        raise ValueError("options.clock_length must be at least 2")
+        raise ValueError(f"options.clock_length (--clock-length) is {library.options.clock_length}; make it 2 or more")
     roles = library.roles
     wanted = (
         ("options.buffer", library.options.buffer, 1, (COPY_TABLE,), "a buffer, of function A"),
@@ -156,7 +170,8 @@ def check_library(library: TwoPhaseLibrary) -> None:
     )
     for key, name, inputs, tables, words in wanted:
         if name not in names:
-            raise ValueError(f"{key} is '{name}', but the cells are {', '.join(names)}")
+            hint = "; name the buffer there or with --buffer" if key == "options.buffer" else ""
+            raise ValueError(f"{key} is '{name}', but the cells are {', '.join(names)}{hint}")
         cell = library.cell(name)
         if len(cell.inputs) != inputs or cell.function not in tables:
             raise ValueError(f"{key}: cell '{name}' is not {words}")

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from mdlcad.language import Device, parse_device, read_device
+from mdlcad.mapping.request import MappingRequest
 from mdlcad.mapping.two_phase import TwoPhaseLibrary, load_two_phase
 from mdlcad.mapping.two_phase.build import build_network
 from mdlcad.mapping.two_phase.circuit import Circuit, Instance
@@ -56,7 +57,7 @@ def listing(name: str) -> Device:
 
 def library(parameters: str | None = None, **options: object) -> TwoPhaseLibrary:
     """The library with other options."""
-    found = load_two_phase("two_phase", parameters)
+    found = load_two_phase("two_phase", MappingRequest(parameters=parameters))
     return replace(found, options=replace(found.options, **options))
 
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from mdlcad.mapping.request import MappingRequest
 from mdlcad.mapping.two_phase import load_two_phase
 from mdlcad.mapping.two_phase.library import TwoPhaseLibrary
 from mdlcad.network.model import CouplingKind, Network
@@ -53,7 +54,7 @@ def table_by_simulation(cells: TwoPhaseLibrary, name: str) -> list[int]:
 @pytest.mark.parametrize("parameters", SETS)
 @pytest.mark.parametrize("name", ["NOR", "NOT", "BUF", "ZERO", "ONE"])
 def test_truth_table(name: str, parameters: str) -> None:
-    cells = load_two_phase("two_phase", parameters)
+    cells = load_two_phase("two_phase", MappingRequest(parameters=parameters))
     function = cells.cell(name).function
     table = table_by_simulation(cells, name)
     assert table == [function >> m & 1 for m in range(len(table))]
@@ -74,7 +75,7 @@ def test_a_nor_with_a_wrong_bias_is_caught(bias: float) -> None:
 
 @pytest.mark.parametrize("parameters", SETS)
 def test_a_latch_takes_its_data_with_the_tick_and_keeps_them_without(parameters: str) -> None:
-    cells = load_two_phase("two_phase", parameters)
+    cells = load_two_phase("two_phase", MappingRequest(parameters=parameters))
     latch = cells.cell("LATCH")
     rng = np.random.default_rng(5)
     inputs = rng.integers(0, 2, (40, 2, 8), dtype=np.uint8)

@@ -12,6 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mdlcad.errors import UsageError
+from mdlcad.mapping.request import MappingRequest
 from mdlcad.mapping.two_phase import liberty, load_two_phase
 from mdlcad.mapping.two_phase.function import truth_table
 from mdlcad.network.model import CouplingKind
@@ -29,7 +30,7 @@ def spoilt(folder: Path, before: str, after: str) -> str:
 
 
 def test_the_literal_numbers_are_the_papers() -> None:
-    cells = load_two_phase("two_phase", "literal")
+    cells = load_two_phase("two_phase", MappingRequest(parameters="literal"))
     dynamics = cells.dynamics
     assert (dynamics.inertia, dynamics.damping, dynamics.quartic, dynamics.phases) == (0.05, 0.25, 1.0, 2)
     for cell in cells.cells:
@@ -96,7 +97,7 @@ def test_robust_is_the_default() -> None:
 def test_what_is_wrong_is_said(tmp_path: Path, before: str, after: str, words: str) -> None:
     path = spoilt(tmp_path, before, after)
     with pytest.raises(UsageError, match=words.replace("(", r"\(").replace(")", r"\)")) as caught:
-        load_two_phase(path, "literal" if "inertia" in before else None)
+        load_two_phase(path, MappingRequest(parameters="literal" if "inertia" in before else None))
     assert "library.toml" in str(caught.value)
 
 
