@@ -15,7 +15,7 @@ from mdlcad.flow.folder import REPORT, new_folder
 from mdlcad.flow.plans import steps_with
 from mdlcad.flow.result import failures, make_report
 from mdlcad.flow.state import Job, State
-from mdlcad.flow.steps import Step
+from mdlcad.flow.steps import STEPS, Step
 from mdlcad.language import Device
 from mdlcad.mapping import CELLS_FILE, Library, MappingRequest, load_library, recorded_library
 from mdlcad.mechanics import Sizing, load_process
@@ -64,8 +64,13 @@ def build(request: Request, say: Callable[[str], None]) -> tuple[Path, list[str]
         InputError, UsageError: the program or the request cannot be used; nothing was written.
         SignoffError: a stage does not hold and nothing worth keeping was made; nothing was written.
     """
+    _chosen(STEPS, request.first, request.last)
     library, process = _library(request), load_process(request.process)
     steps, loaded = _chosen(steps_with(library, request.last), request.first, request.last)
+    if request.cells is not None and any(step.name == "network" for step in loaded):
+        raise UsageError(
+            f"--cells {request.cells}: the network is taken from the folder; leave it out, or start earlier"
+        )
     state = State()
     source: Path | None = request.source
     if loaded:
@@ -85,7 +90,6 @@ def build(request: Request, say: Callable[[str], None]) -> tuple[Path, list[str]
                 data = step.artefact(state)
                 write_atomic(folder / f"{step.name}.json", data)
                 records.append(StageRecord(step.name, 0.0, checksum(data)))
-            step.draw(job, state)
         for step in steps:
             state, record = _run(step, job, state, say)
             records.append(record)
@@ -113,9 +117,7 @@ def _library(request: Request) -> Library:
     return recorded_library(request.source)
 
 
-def _chosen(
-    plan: tuple[Step, ...], first: str | None, last: str | None
-) -> tuple[tuple[Step, ...], tuple[Step, ...]]:
+def _chosen(plan: tuple[Step, ...], first: str | None, last: str | None) -> tuple[tuple[Step, ...], tuple[Step, ...]]:
     """The steps of ``plan`` to run and the steps whose artefacts are loaded instead."""
     names = [step.name for step in plan]
     for flag, name in (("--from", first), ("--to", last)):
@@ -159,7 +161,6 @@ def _run(step: Step, job: Job, state: State, say: Callable[[str], None]) -> tupl
         data = step.artefact(state)
         digest = checksum(data)
         write_atomic(job.folder / f"{step.name}.json", data)
-        step.draw(job, state)
     else:
         fresh = sorted(set(state.files) - before)
         digest = checksum("".join(f"{name} {checksum((job.folder / name).read_bytes())}\n" for name in fresh).encode())

@@ -10,7 +10,7 @@ from mdlcad.artefact import load
 from mdlcad.errors import UsageError
 from mdlcad.mapping import library as parametron
 from mdlcad.mapping import mapper
-from mdlcad.mapping.request import MappingRequest
+from mdlcad.mapping.request import AS_WRITTEN, MappingRequest
 from mdlcad.mapping.two_phase import TwoPhaseLibrary, liberty, load_two_phase, map_two_phase
 from mdlcad.mapping.two_phase.load import library_kind
 from mdlcad.network.model import Network
@@ -26,7 +26,7 @@ class _Kind(msgspec.Struct):
     kind: str
 
 
-def load_library(name_or_path: str, request: MappingRequest = MappingRequest()) -> Library:
+def load_library(name_or_path: str, request: MappingRequest = AS_WRITTEN) -> Library:
     """The library of that name in ``cells/``, or the one in the folder or TOML file at that path.
 
     Raises:

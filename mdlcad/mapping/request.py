@@ -32,3 +32,7 @@ class MappingRequest:
             for field in fields(self)
             if (value := getattr(self, field.name)) is not None
         }
+
+
+AS_WRITTEN = MappingRequest()
+"""Nothing asked for: all is as the library's file says."""

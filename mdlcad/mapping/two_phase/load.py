@@ -11,7 +11,7 @@ import msgspec
 
 from mdlcad.datafolder import find_data
 from mdlcad.errors import UsageError
-from mdlcad.mapping.request import MappingRequest
+from mdlcad.mapping.request import AS_WRITTEN, MappingRequest
 from mdlcad.mapping.two_phase.function import truth_table
 from mdlcad.mapping.two_phase.library import (
     AND_TABLE,
@@ -87,7 +87,7 @@ class LibraryData(msgspec.Struct, frozen=True, forbid_unknown_fields=True, renam
     sets: dict[str, dict[str, float]]
 
 
-def load_two_phase(name_or_path: str, request: MappingRequest = MappingRequest()) -> TwoPhaseLibrary:
+def load_two_phase(name_or_path: str, request: MappingRequest = AS_WRITTEN) -> TwoPhaseLibrary:
     """The two-phase library of that name in ``cells/``, or the one in the folder or TOML file at that path.
 
     Args:
