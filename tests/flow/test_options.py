@@ -67,8 +67,8 @@ def test_the_default_library_is_written_down_too(tmp_path):
         ([*PAPERS, "--clock-length", "7"], "a clock of 7 cycles is too short for this device: make it at least"),
         ([*PAPERS, "--buffer", "COPY"], "options.buffer is 'COPY', but the cells are NOR"),
         ([*PAPERS, "--buffer", "NOT"], "cell 'NOT' is not a buffer"),
-        (["--cells", "two_phase"], "there are no parts for either yet"),
-        (["--cells", "two_phase", "--to", "sizing"], "there are no parts for either yet"),
+        (["--cells", "two_phase"], "for which there are no parts yet"),
+        (["--cells", "two_phase", "--to", "sizing"], "for which there are no parts yet"),
         (["--cells", "two_phase", "--to", "nonsense"], "no such stage"),
     ],
 )
