@@ -114,6 +114,8 @@ class Network:
         tick: the mass of the tick ring that the registers see (None for a device without state).
         cycles_per_tick: power-clock cycles from one decision to the next (for a device without state: cycles until
             the outputs follow the inputs).
+        tick_drive: the cycle of every decision in which ``tick`` has to be pushed to 1 from outside, and to 0 in all
+            others; None where the network ticks by itself.
     """
 
     design: str
@@ -126,3 +128,4 @@ class Network:
     registers: tuple[Register, ...]
     tick: str | None
     cycles_per_tick: int
+    tick_drive: int | None = None

@@ -13,6 +13,7 @@ from mdlcad.proof.itinerary import Itinerary
 from mdlcad.proof.outcome import Mismatch
 from mdlcad.proof.timing import Timing
 from mdlcad.simulation.decode import decode, instants
+from mdlcad.simulation.drive import with_tick
 from mdlcad.simulation.run import Stimulus, Watch, simulate
 from mdlcad.simulation.system import Floats, System
 
@@ -117,12 +118,15 @@ def stimulus_of(
     sensor_force: float,
     steps_per_period: int,
 ) -> Stimulus:
-    """The forces on the sensors: (2 b - 1) ``sensor_force``, upside down where the mass is, held for each decision."""
+    """The forces on the sensors: (2 b - 1) ``sensor_force``, upside down where the mass is, held for each decision.
+
+    And that on the tick, where the network has none of its own.
+    """
     taker = {port.bit: port.mass for port in network.sensors}
     sensors = np.array([system.index(taker[bit]) for bit in reference.inputs], dtype=np.int64)
     force = sensor_force * (2.0 * itinerary.inputs.transpose(0, 2, 1) - 1.0) * system.polarity[sensors][:, None]
     span = timing.period * steps_per_period
-    return Stimulus(sensors, np.ascontiguousarray(force), span, span)
+    return with_tick(network, system, Stimulus(sensors, np.ascontiguousarray(force), span, span), steps_per_period)
 
 
 def _ticks_right(seen: Bits, timing: Timing, decisions: int) -> NDArray[np.bool_]:

@@ -21,7 +21,8 @@ import numpy as np
 
 from mdlcad.network.model import Network
 from mdlcad.simulation.decode import decode, instants
-from mdlcad.simulation.run import Watch, simulate, undriven
+from mdlcad.simulation.drive import with_tick
+from mdlcad.simulation.run import Stimulus, Watch, simulate
 from mdlcad.simulation.system import Ints, System
 
 
@@ -53,7 +54,7 @@ class Timing:
 
 
 def find_timing(network: Network, system: System, steps_per_period: int) -> Timing:
-    """Derive the timing, running the network without forces for four decisions to find its tick.
+    """Derive the timing, running the network for four decisions, without forces on its sensors, to find its tick.
 
     Raises:
         NoTick: see there.
@@ -63,8 +64,14 @@ def find_timing(network: Network, system: System, steps_per_period: int) -> Timi
         return Timing(n, -1, 0)
     tick = np.array([system.index(network.tick)])
     instant = instants(system, tick, steps_per_period)
+    span = n * steps_per_period
+    free = Stimulus(np.zeros(0, dtype=np.int64), np.zeros((4, 0, 1)), span, span)
     run = simulate(
-        system, undriven(), 4 * n * steps_per_period, watch=Watch(tick, instant), steps_per_period=steps_per_period
+        system,
+        with_tick(network, system, free, steps_per_period),
+        4 * span,
+        watch=Watch(tick, instant),
+        steps_per_period=steps_per_period,
     )
     bits = decode(system, tick, run.readings)[:, 0, 0]
     seen = [int(cycle) for cycle in np.flatnonzero(bits == 1)]

@@ -23,6 +23,7 @@ from mdlcad.proof.timing import Timing, find_timing
 from mdlcad.scenario.ports import Bits
 from mdlcad.scenario.world import World
 from mdlcad.simulation.decode import UNDECIDED
+from mdlcad.simulation.drive import with_tick
 from mdlcad.simulation.run import Stimulus, simulate, steps_for
 from mdlcad.simulation.system import Floats, Ints, System, system_of
 
@@ -136,7 +137,7 @@ def trace(network: Network, journey: Journey) -> tuple[Ints, Floats]:
     stride = spp // FRAMES_PER_CYCLE
     run = simulate(
         system,
-        Stimulus(sensors, np.ascontiguousarray(drive), span, span),
+        with_tick(network, system, Stimulus(sensors, np.ascontiguousarray(drive), span, span), spp),
         journey.decisions * span,
         trace_stride=stride,
         steps_per_period=spp,

@@ -57,6 +57,7 @@ def build_network(
         registers=tuple(Register(register.bit, register.bit, register.initial) for register in netlist.registers),
         tick=_tick_mass(circuit),
         cycles_per_tick=schedule.cycles,
+        tick_drive=schedule.tick_cycle if circuit.ticking and not circuit.loops else None,
     )
 
 

@@ -144,6 +144,21 @@ def test_without_a_clock_the_tick_comes_from_outside() -> None:
     assert (bits == expected).all()
 
 
+def test_without_a_clock_every_transition_is_right_with_a_tick_from_outside() -> None:
+    device = example("mazerobot")
+    network = mapped(device, clock=False, clock_length=SHORT)
+    assert network.tick_drive is not None
+    assert proved(device, network).transitions_checked == 64
+
+
+def test_a_tick_from_outside_in_a_wrong_cycle_is_caught() -> None:
+    device = small(RACE.format(last=1))
+    network = mapped(device, clock=False, clock_length=SHORT)
+    reference = build_reference(device)
+    assert prove(network, reference, decisions=300).holds
+    assert not prove(replace(network, tick_drive=SHORT - 1), reference, decisions=300).holds
+
+
 def test_a_wrong_network_is_caught() -> None:
     device = example("voter")
     network = mapped(device)
