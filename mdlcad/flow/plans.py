@@ -25,7 +25,7 @@ def steps_with(library: Library, last: str | None) -> tuple[Step, ...]:
     if last is None or last in beyond:
         raise UsageError(
             f"the cell library {library.name} couples masses by springs that the power clock switches and opens "
-            "latches by springs that multiply, for which there are no parts yet; a whole build would have to leave them out. "
-            f"Build with --to {NETWORK_STEPS[-1].name}, or with --cells parametron"
+            "latches by springs that multiply, for which there are no parts yet; a whole build would have to leave "
+            f"them out. Build with --to {NETWORK_STEPS[-1].name}, or with --cells parametron"
         )
     return NETWORK_STEPS
