@@ -31,6 +31,13 @@ def say(line: str) -> None:
     print(line, flush=True)
 
 
+def progress(words: str) -> None:
+    """How far long work is, on one line that the next overwrites; nothing if nobody watches."""
+    if sys.stderr.isatty():
+        sys.stderr.write(f"\r\033[K  {words}" if words else "\r\033[K")
+        sys.stderr.flush()
+
+
 def show(artefact: object) -> None:
     """An artefact as its JSON."""
     from mdlcad.artefact import to_json

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
@@ -81,10 +82,11 @@ def estimate_yield(
     decisions: int = 400,
     seed: int = 0,
     workers: int = 2,
+    progress: Callable[[int], None] = lambda done: None,
 ) -> Yield:
     """Sample devices and walk each through the same ``decisions`` (or somewhat more) from power-up.
 
-    ``workers`` threads share the samples; the result does not depend on them.
+    ``workers`` threads share the samples; the result does not depend on them. ``progress`` hears how many are done.
 
     Raises:
         UsageError: the bits of the network are not those of the reference.
@@ -106,7 +108,10 @@ def estimate_yield(
         return False, _first_slip(nominal, _all_bits(device, reference, built, itinerary, timing, steps), system)
 
     with ThreadPoolExecutor(workers) as pool:
-        outcomes = list(pool.map(try_sample, range(samples)))
+        outcomes = []
+        for outcome in pool.map(try_sample, range(samples)):
+            outcomes.append(outcome)
+            progress(len(outcomes))
     right = sum(behaves for behaves, _ in outcomes)
     first = Counter(slip for _, slip in outcomes if slip is not None)
     low, high = wilson(right, samples)

@@ -6,12 +6,10 @@ import shutil
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import TypeVar
 
 import matplotlib.style
-import msgspec
 
-from mdlcad.artefact import from_json, to_json, write_atomic
+from mdlcad.artefact import load, to_json, write_atomic
 from mdlcad.errors import UsageError
 from mdlcad.language import Device
 from mdlcad.network.model import Network
@@ -31,7 +29,6 @@ from mdlcad.scenario.result import ScenarioResult, decisions_of, failures_of
 from mdlcad.scenario.seats import PlacedSeats, Seats, free_seats, placed_seats
 from mdlcad.scenario.world import Hands, Maze, each_sensor, make_world
 
-T = TypeVar("T")
 RESULT = "result.json"
 _EACH_SENSOR = "each-sensor"
 
@@ -50,7 +47,7 @@ def run_scenario(folder: Path, scenario: str | None, say: Callable[[str], None])
     Raises:
         UsageError: the build or the scenario cannot be used; nothing was written.
     """
-    device, network = _load(folder / "device.json", Device), _load(folder / "network.json", Network)
+    device, network = load(folder, "device.json", Device), load(folder, "network.json", Network)
     name, world = _chosen(scenario, device)
     seats = _seats(folder, device, network)
     reference = build_reference(device)
@@ -137,7 +134,7 @@ def _seats(folder: Path, device: Device, network: Network) -> Seats:
     path = folder / "placement.json"
     if not path.exists():
         return free_seats(device, network)
-    found = placed_seats(_load(path, PlacedSeats))
+    found = placed_seats(load(folder, path.name, PlacedSeats))
     missing = [mass.name for mass in network.masses if mass.name not in found.masses]
     missing += [port.bit for port in (*network.sensors, *network.actuators) if port.bit not in found.ports]
     if missing:
@@ -154,14 +151,3 @@ def _write(folder: Path, name: str, files: dict[str, bytes]) -> Path:
     for file, data in files.items():
         write_atomic(place / file, data)
     return place
-
-
-def _load(path: Path, kind: type[T]) -> T:
-    try:
-        return from_json(path.read_bytes(), kind)
-    except OSError as problem:
-        raise UsageError(f"{path}: cannot be read ({problem.strerror}); build it first") from None
-    except msgspec.ValidationError as problem:
-        raise UsageError(f"{path}: does not have the shape of this artefact ({problem}); build it again") from None
-    except msgspec.DecodeError as problem:
-        raise UsageError(f"{path}: is not whole JSON ({problem}); build it again") from None
