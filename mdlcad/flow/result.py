@@ -27,6 +27,7 @@ def make_report(state: State, job: Job, records: tuple[StageRecord, ...], versio
         lvs=Lvs(state.lvs.matched, state.lvs.differences) if state.lvs else None,
         drc=state.rules.counts if state.rules else None,
         mechanics=mechanics_of(state.sizing, state.carriers),
+        drive=state.drive,
         extent_mm=extent_of(bodies) if bodies else None,
         plates=tuple(plates_of(bodies)) if bodies else (),
         tiles=len(plates_of(bodies)) if bodies else None,

@@ -10,6 +10,7 @@ from mdlcad.artefact import to_json
 from mdlcad.errors import UsageError
 from mdlcad.language import Device
 from mdlcad.mechanics import Sizing
+from mdlcad.mechanics.drive import DriveLoads
 from mdlcad.network.model import Network
 from mdlcad.parts.store import Parts
 from mdlcad.placement.placement import Placement
@@ -31,6 +32,7 @@ ARTEFACTS: dict[str, Any] = {
     "layout": Layout,
     "parts": Parts,
     "drc": DesignRules,
+    "drive": DriveLoads,
     "extraction": tuple[LvsResult, Proof],
     "report": Report,
     "result": ScenarioResult,

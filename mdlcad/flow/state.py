@@ -9,6 +9,7 @@ from typing import TypeVar
 from mdlcad.language import Device
 from mdlcad.mapping import Library
 from mdlcad.mechanics import Process, Sizing
+from mdlcad.mechanics.drive import DriveLoads
 from mdlcad.network.model import Network
 from mdlcad.parts.body import Body
 from mdlcad.parts.stiffness import CarrierStiffness
@@ -54,6 +55,7 @@ class State:
     bodies: tuple[Body, ...] | None = None
     carriers: tuple[CarrierStiffness, ...] = ()
     rules: DesignRules | None = None
+    drive: DriveLoads | None = None
     files: tuple[str, ...] = ()
     lvs: LvsResult | None = None
     extracted: Proof | None = None

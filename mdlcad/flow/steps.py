@@ -17,6 +17,7 @@ from mdlcad.flow.state import Job, State, need
 from mdlcad.language import Actuator, Device, Sensor, read_device
 from mdlcad.mapping import map_netlist
 from mdlcad.mechanics import size
+from mdlcad.mechanics.drive import drive_loads
 from mdlcad.network.model import CouplingKind
 from mdlcad.parts import build_parts
 from mdlcad.parts.stiffness import carrier_stiffnesses
@@ -127,6 +128,11 @@ def _check_geometry(job: Job, state: State, progress: Progress) -> State:
         job.process,
     )
     return replace(state, rules=rules)
+
+
+def _drive(job: Job, state: State, progress: Progress) -> State:
+    loads = drive_loads(need(state.network), need(state.sizing), job.process, need(state.proof).sensor_force, job.seed)
+    return replace(state, drive=loads)
 
 
 def _export(job: Job, state: State, progress: Progress) -> State:
@@ -258,6 +264,17 @@ STEPS: tuple[Step, ...] = (
         _check_geometry,
         lambda s: f"{len(need(s.rules).errors)} errors, {len(need(s.rules).findings)} findings",
         lambda s: to_json(s.rules),
+    ),
+    Step(
+        "drive",
+        ("network", "proof", "sizing"),
+        ("drive",),
+        _drive,
+        lambda s: (
+            f"clock plates up to {max(p.force_most_n for p in need(s.drive).plates):.0f} N, shaft up to "
+            f"{need(s.drive).torque_most_nmm:.0f} N mm"
+        ),
+        lambda s: to_json(s.drive),
     ),
     Step("files", ("device", "bodies"), ("files",), _export, lambda s: f"{len(s.files)} files", None),
     Step(

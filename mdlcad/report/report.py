@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from mdlcad.mechanics.drive import DriveLoads
+
 
 @dataclass(frozen=True, slots=True)
 class Behaviour:
@@ -76,6 +78,7 @@ class Report:
     lvs: Lvs | None
     drc: dict[str, int] | None
     mechanics: Mechanics | None
+    drive: DriveLoads | None
     extent_mm: tuple[float, float, float] | None
     plates: tuple[str, ...]
     tiles: int | None
