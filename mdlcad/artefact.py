@@ -51,7 +51,7 @@ def load(folder: Path, name: str, kind: type[T]) -> T:
         raise UsageError(f"{path}: cannot be read: {problem.strerror}") from None
     except msgspec.ValidationError as problem:
         raise UsageError(f"{path}: does not have the shape of this artefact ({problem}); build it again") from None
-    except (msgspec.DecodeError, RecursionError) as problem:
+    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as problem:
         raise UsageError(f"{path}: is not whole JSON ({problem}); build it again") from None
 
 

@@ -48,7 +48,7 @@ def run_scenario(folder: Path, scenario: str | None, say: Callable[[str], None])
         UsageError: the build or the scenario cannot be used; nothing was written.
     """
     device, network = load(folder, "device.json", Device), load(folder, "network.json", Network)
-    name, world = _chosen(scenario, device)
+    name, world = chosen_world(scenario, device)
     seats = _seats(folder, device, network)
     reference = build_reference(device)
     try:
@@ -68,7 +68,12 @@ def run_scenario(folder: Path, scenario: str | None, say: Callable[[str], None])
     return list(result.failures)
 
 
-def _chosen(scenario: str | None, device: Device) -> tuple[str, Maze | Hands]:
+def chosen_world(scenario: str | None, device: Device) -> tuple[str, Maze | Hands]:
+    """Name and world of a scenario (a name or a path); without one, of that written for the device, or each sensor.
+
+    Raises:
+        UsageError: there is no such scenario, or it does not fit the device.
+    """
     path = own_scenario(device.name) if scenario is None else find_scenario(scenario)
     if path is None:
         return _EACH_SENSOR, each_sensor(device)
