@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 from shapely import Polygon
 
-from mdlcad.artefact import to_json
+from mdlcad.artefact import to_json, write_atomic
 from mdlcad.errors import SignoffError, UsageError
 from mdlcad.flow.state import Job, State, need
 from mdlcad.language import Actuator, Device, Sensor, read_device
@@ -26,6 +26,7 @@ from mdlcad.placement.ports import PortPlace
 from mdlcad.proof.prove import prove
 from mdlcad.proof.reference import build_reference
 from mdlcad.routing import place_and_route
+from mdlcad.routing.drawing import draw_layout
 from mdlcad.signoff.extraction import extract
 from mdlcad.signoff.geometry import check_geometry
 from mdlcad.signoff.lvs import compare, recover
@@ -103,6 +104,14 @@ def _place_and_route(job: Job, state: State, progress: Progress) -> State:
     return replace(state, placement=placement, layout=layout)
 
 
+def _draw_layout(job: Job, state: State, progress: Progress) -> State:
+    picture = draw_layout(need(state.network), need(state.placement), need(state.layout), need(state.sizing).rules)
+    views = job.folder / "views"
+    views.mkdir(exist_ok=True)
+    write_atomic(views / "layout.svg", picture)
+    return state
+
+
 def _build_parts(job: Job, state: State, progress: Progress) -> State:
     network, placement, layout, sizing = (
         need(state.network),
@@ -158,6 +167,7 @@ def _lvs(job: Job, state: State, progress: Progress) -> State:
 def _picture(job: Job, state: State, progress: Progress) -> State:
     from mdlcad.view.views import write_views  # VTK takes seconds to load
 
+    _draw_layout(job, state, progress)  # once more: a build that began after the layout has no drawing yet
     return replace(state, files=state.files + write_views(need(state.bodies), job.folder, progress))
 
 
@@ -240,9 +250,9 @@ STEPS: tuple[Step, ...] = (
     ),
     Step(
         "layout",
-        ("layout",),
+        ("network", "placement", "layout", "sizing"),
         (),
-        lambda job, state, progress: state,
+        _draw_layout,
         lambda s: (
             f"{len(need(s.layout).rungs)} rungs, {len(need(s.layout).trunks)} trunks, "
             f"{len(need(s.layout).couplers)} couplers"
@@ -288,7 +298,14 @@ STEPS: tuple[Step, ...] = (
         ),
         lambda s: to_json([s.lvs, s.extracted]),
     ),
-    Step("views", ("bodies", "files"), ("files",), _picture, lambda s: "pictures", None),
+    Step(
+        "views",
+        ("network", "placement", "layout", "sizing", "bodies", "files"),
+        ("files",),
+        _picture,
+        lambda s: "pictures",
+        None,
+    ),
 )
 
 

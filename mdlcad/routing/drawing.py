@@ -1,97 +1,112 @@
-"""One SVG of a placement and its routing: rim, units, trunks, rungs by plate, flexures, posts, tabs. Same input, same
-bytes; hovering over a piece shows its name."""
+"""One SVG of a placement and its routing, to scale: rim, units, trunks, rungs by plate, flexures, posts, tabs.
+
+Rungs of several plates lie over each other in a row. Each plate therefore has its own lane within the row, the lowest
+plate lowest, so that nothing hides anything and no plate is told by its colour alone. Hovering over a piece shows its
+name and picks out its whole net. Same input, same bytes.
+"""
 
 from __future__ import annotations
 
 from html import escape
+from itertools import pairwise
 
 from mdlcad.mechanics.rules import LayoutRules
 from mdlcad.network.model import Network
 from mdlcad.placement.placement import Placement
+from mdlcad.routing.key import write_key
 from mdlcad.routing.layout import EndKind, Layout, Rung, RungEnd, Side
+from mdlcad.routing.pen import Pen, number, text_width
+from mdlcad.routing.sheet import SHEET, Lanes
 
-PHASES = ("#cfe3f5", "#d9efd2", "#fbe3c8", "#ead9f0", "#f5d5d5")
-TRUNK = "#5a5a5a"
-PLATES = ("#c0392b", "#2471a3", "#1e8449", "#b9770e", "#7d3c98", "#117a8b")
-"""Colours of the rung plates, bottom to top."""
-POST = "#111111"
-MARGIN = 16.0
-LETTER = 2.4
-"""Width of a letter of a port's label, about, mm."""
+MARGIN = 14.0
+PORT_TEXT, NAME_TEXT = 5.0, 3.0
+ORDINARY = 300.0
+"""Of a picture wider than this, mm, heading, key and port names grow along; the names of masses have only their row."""
+PIXELS_A_MM = 4.0
+"""Size at which a browser shows the picture; at this the smallest text is 11 pixels high."""
 
 
 def draw_layout(network: Network, placement: Placement, layout: Layout, rules: LayoutRules) -> bytes:
-    """The drawing, 1 mm a user unit, y up. Rungs are solid, flexures hatched in their plate's colour, bias leaves
-    dotted, posts black."""
+    """The drawing, 1 mm a user unit, y up."""
     xs, ys = [x for x, _ in placement.boundary], [y for _, y in placement.boundary]
-    aside = MARGIN + LETTER * max((len(port.bit) for port in placement.ports), default=0)
-    left, top = min(xs) - aside, max(ys) + MARGIN
-    width, height = max(xs) - min(xs) + 2 * aside, max(ys) - min(ys) + 2 * MARGIN
-    pen = _Pen(left, top, dict(zip(rules.link_plates, PLATES * 2, strict=False)))
-    pen.polygon(placement.boundary, "#f6f4ef", "#8a8578", "boundary")
+    grow = max(1.0, (max(xs) - min(xs)) / ORDINARY)
+    aside = (MARGIN + max((text_width(port.bit, PORT_TEXT) for port in placement.ports), default=0.0)) * grow
+    left, top = min(xs) - aside, max(ys) + (MARGIN + 12.0) * grow
+    width = max(xs) - min(xs) + 2 * aside
+    foot = min(ys) - (MARGIN + 4.0) * grow
+    lanes = Lanes(rules)
+    nets = {mass.name: f"n{index}" for index, mass in enumerate(network.masses)}
+    size = f"{max(xs) - min(xs):.1f} x {max(ys) - min(ys):.1f} mm"
+    heading = f"{network.design}: {len(network.masses)} masses, {len(network.couplings)} couplings, {size}"
+    pen = Pen(left, top)
+    pen.text(left + 4.0 * grow, top - 8.0 * grow, heading, f'class="lh" font-size="{number(6.5 * grow)}"')
+    pen.polygon(placement.boundary, 'class="lb"', "boundary")
     _units(pen, network, placement, rules)
-    half = rules.bar_width / 2
-    for trunk in layout.trunks:
-        pen.box(trunk.x - half, trunk.y_low - half, trunk.x + half, trunk.y_high + half, TRUNK, 0.75, trunk.name)
-    for rung in layout.rungs:
-        low, high = _reach(rung.left, -1, rules), _reach(rung.right, 1, rules)
-        pen.box(low, rung.y - half, high, rung.y + half, pen.plates[rung.plate], 0.6, _rung_words(rung))
-    hubs = {unit.mass: unit for unit in placement.masses}
-    targets = {coupling.name: coupling.target for coupling in network.couplings}
-    for leaf in layout.couplers:
-        hub = hubs[targets[leaf.coupling]]
-        edge = hub.x + (rules.hub_half if leaf.side is Side.RIGHT else -rules.hub_half)
-        low, high = sorted((edge, leaf.start_x))
-        pen.leaf(low, leaf.y, high, pen.plates[leaf.plate], f"coupler {leaf.coupling} on {leaf.plate}")
-        if leaf.post_x is not None:
-            pen.disc(leaf.post_x, leaf.y, rules.post_radius, f"post of {leaf.coupling}")
-    for bias in layout.biases:
-        hub = hubs[bias.mass]
-        edge = hub.x + (rules.hub_half if bias.side is Side.RIGHT else -rules.hub_half)
-        y = hub.y + rules.bias_offsets.get(bias.mass, 0.0)
-        pen.dotted(edge, hub.y, bias.post_x, y, pen.plates[bias.plate], f"bias of {bias.mass} on {bias.plate}")
-        pen.disc(bias.post_x, y, rules.post_radius, f"bias post of {bias.mass}")
-    for tab in layout.tabs:
-        pen.path(tab.path, rules.bar_width, pen.plates[tab.plate], f"tab {tab.bit} on {tab.plate}")
-    for port in placement.ports:
-        x, y = port.normal
-        anchor = "middle" if abs(y) > abs(x) else "start" if x > 0 else "end"
-        pen.label(port.x + 11 * x, port.y - 1.4 + 11 * y, port.bit, 4.0, anchor)
-    _hubs(pen, placement, rules)
-    _legend(pen, left, top, rules)
+    _trunks(pen, layout, rules, nets)
+    _rungs(pen, layout, rules, lanes, nets)
+    _flexures(pen, network, placement, layout, rules, lanes, nets)
+    _tabs(pen, layout, rules, lanes, nets)
+    _hubs(pen, placement, rules, nets)
+    _ports(pen, network, placement, grow)
+    key = Pen(0.0, 0.0)
+    height = top - foot + grow * write_key(key, width / grow, grow, network, rules)
+    pen.open(f'transform="translate(0 {number(top - foot)}) scale({number(grow)})"')
+    pen.lines += key.lines
+    pen.close()
     body = "\n".join(pen.lines)
+    pixels = f'width="{number(width * PIXELS_A_MM)}" height="{number(height * PIXELS_A_MM)}"'
     return (
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {_n(width)} {_n(height)}" '
-        f'width="{_n(width * 4)}" height="{_n(height * 4)}" font-family="sans-serif">\n{body}\n</svg>\n'
+        f'<svg xmlns="http://www.w3.org/2000/svg" class="layout" viewBox="0 0 {number(width)} {number(height)}" '
+        f'{pixels} role="img" font-family="sans-serif">\n<title>{escape(heading)}</title>\n'
+        f"<style>{SHEET}{_net_rules(nets)}</style>\n{body}\n</svg>\n"
     ).encode()
 
 
-def _units(pen: _Pen, network: Network, placement: Placement, rules: LayoutRules) -> None:
-    phases = {mass.name: mass.phase for mass in network.masses}
+def _net_rules(nets: dict[str, str]) -> str:
+    """While a piece of a net is hovered over, the pieces of all other nets fade."""
+    return "".join(
+        f".layout:has(.{key}:hover) .c:not(.{key}){{opacity:.12}}.layout:has(.{key}:hover) rect.{key}{{stroke:#000;"
+        "stroke-width:.35}"
+        for key in nets.values()
+    )
+
+
+def _units(pen: Pen, network: Network, placement: Placement, rules: LayoutRules) -> None:
+    masses = {mass.name: mass for mass in network.masses}
+    taken = {(unit.column, unit.row) for unit in placement.masses}
     half = rules.row_pitch / 2 - 0.3
     for column, row in placement.slots:
-        x, y = placement.column_x[column], placement.row_y[row]
-        pen.box(x - rules.unit_left, y - half, x + rules.unit_right, y + half, "#e9e6de", 0.5, f"slot {column}, {row}")
+        if (column, row) not in taken:
+            x, y = placement.column_x[column], placement.row_y[row]
+            words = f"free slot, column {column}, row {row}"
+            pen.box((x - rules.unit_left, y - half), (x + rules.unit_right, y + half), 'class="lf"', words, 1.0)
     for unit in placement.masses:
-        colour = PHASES[phases[unit.mass] % len(PHASES)]
-        words = f"{unit.mass}, phase {phases[unit.mass]}, column {unit.column}, row {unit.row}"
-        pen.box(unit.x - rules.unit_left, unit.y - half, unit.x + rules.unit_right, unit.y + half, colour, 1.0, words)
+        mass = masses[unit.mass]
+        words = f"{unit.mass}: {mass.kind.value}, phase {mass.phase}, column {unit.column}, row {unit.row}"
+        low, high = (unit.x - rules.unit_left, unit.y - half), (unit.x + rules.unit_right, unit.y + half)
+        pen.box(low, high, f'class="u{mass.phase % 5}"', words, 1.0)
+        pen.text(low[0] + 1.2, high[1] - 3.0, str(mass.phase), 'class="lp"')
 
 
-def _hubs(pen: _Pen, placement: Placement, rules: LayoutRules) -> None:
-    pin = rules.pin / 2
-    for unit in placement.masses:
-        for x in (unit.x - rules.hub_pin_offset, unit.x + rules.hub_pin_offset):
-            pen.box(x - pin, unit.y - pin, x + pin, unit.y + pin, POST, 0.9, f"hub of {unit.mass}")
-        pen.label(unit.x, unit.y + rules.row_pitch / 2 - 3.0, unit.mass, 2.6)
+def _trunks(pen: Pen, layout: Layout, rules: LayoutRules, nets: dict[str, str]) -> None:
+    half = rules.bar_width / 2
+    for trunk in layout.trunks:
+        style = f'class="c lv {nets[trunk.net]}"'
+        words = f"{trunk.name} of {trunk.net} on V"
+        pen.box((trunk.x - half, trunk.y_low - half), (trunk.x + half, trunk.y_high + half), style, words)
 
 
-def _legend(pen: _Pen, left: float, top: float, rules: LayoutRules) -> None:
-    x, y = left + 3.0, top - 6.0
-    for name, colour in (("V", TRUNK), *((plate, pen.plates[plate]) for plate in rules.link_plates)):
-        pen.box(x, y - 1.5, x + 6.0, y + 1.5, colour, 0.8, name)
-        pen.label(x + 10.0, y - 1.3, name, 4.0)
-        x += 17.0
+def _rungs(pen: Pen, layout: Layout, rules: LayoutRules, lanes: Lanes, nets: dict[str, str]) -> None:
+    for rung in layout.rungs:
+        y, half = rung.y + lanes.offset[rung.plate], lanes.width / 2
+        low, high = _reach(rung.left, -1, rules), _reach(rung.right, 1, rules)
+        style = f'class="c {lanes.key[rung.plate]} {nets[rung.net]}"'
+        pen.box((low, y - half), (high, y + half), style, _rung_words(rung))
+        for end in (rung.left, rung.right):
+            if end.kind is EndKind.VIA:
+                pin = lanes.width / 3
+                words = f"via of {rung.net}: {rung.plate} to V"
+                pen.box((end.x - pin, y - pin), (end.x + pin, y + pin), 'class="lo"', words)
 
 
 def _rung_words(rung: Rung) -> str:
@@ -107,54 +122,76 @@ def _reach(end: RungEnd, outward: int, rules: LayoutRules) -> float:
     return end.x
 
 
-def _n(value: float) -> str:
-    return f"{value:.2f}".rstrip("0").rstrip(".") if abs(value) >= 0.005 else "0"
+def _flexures(
+    pen: Pen,
+    network: Network,
+    placement: Placement,
+    layout: Layout,
+    rules: LayoutRules,
+    lanes: Lanes,
+    nets: dict[str, str],
+) -> None:
+    hubs = {unit.mass: unit for unit in placement.masses}
+    couplings = {coupling.name: coupling for coupling in network.couplings}
+    for leaf in layout.couplers:
+        coupling = couplings[leaf.coupling]
+        hub = hubs[coupling.target]
+        edge = hub.x + (rules.hub_half if leaf.side is Side.RIGHT else -rules.hub_half)
+        y = leaf.y + lanes.offset[leaf.plate]
+        kind = "rocker" if coupling.strength < 0 else "coupler"
+        words = f"{kind} {leaf.coupling} on {leaf.plate}, strength {coupling.strength:g}"
+        low, high = sorted((edge, leaf.start_x))
+        style = f'class="c z {lanes.stroke[leaf.plate]} {nets[coupling.source]}"'
+        pen.line(lanes.zigzag(low, high, y), style, words)
+        if leaf.post_x is not None:
+            pen.disc(leaf.post_x, y, rules.post_radius, 'class="lr"', f"post of {words}")
+    for bias in layout.biases:
+        hub = hubs[bias.mass]
+        edge = hub.x + (rules.hub_half if bias.side is Side.RIGHT else -rules.hub_half)
+        y = hub.y + rules.bias_offsets.get(bias.mass, 0.0)
+        words = f"bias leaf of {bias.mass} on {bias.plate}"
+        start = (edge, hub.y + lanes.offset[bias.plate])
+        pen.line([start, (bias.post_x, y)], f'class="d {lanes.stroke[bias.plate]}"', words)
+        pen.disc(bias.post_x, y, rules.post_radius, 'class="lo"', f"post of the {words}")
 
 
-class _Pen:
-    """Writes SVG elements; takes y up, writes y down."""
+def _tabs(pen: Pen, layout: Layout, rules: LayoutRules, lanes: Lanes, nets: dict[str, str]) -> None:
+    for tab in layout.tabs:
+        # a box a straight piece, so that a net that is picked out is outlined here as elsewhere
+        half = rules.bar_width / 2
+        for (x0, y0), (x1, y1) in pairwise(tab.path):
+            # fills the corners between pieces
+            dx, dy = (half, 0.0) if x0 == x1 else (0.0, half)
+            low, high = (min(x0, x1) - dx, min(y0, y1) - dy), (max(x0, x1) + dx, max(y0, y1) + dy)
+            style = f'class="c {lanes.key[tab.plate]} {nets[tab.net]}"'
+            pen.box(low, high, style, f"tab of {tab.bit} on {tab.plate}, moved by {tab.net}")
 
-    def __init__(self, left: float, top: float, plates: dict[str, str]) -> None:
-        self.left, self.top, self.plates = left, top, plates
-        self.lines: list[str] = []
 
-    def at(self, x: float, y: float) -> tuple[str, str]:
-        return _n(x - self.left), _n(self.top - y)
+def _hubs(pen: Pen, placement: Placement, rules: LayoutRules, nets: dict[str, str]) -> None:
+    pin = rules.pin / 2
+    for unit in placement.masses:
+        for x in (unit.x - rules.hub_pin_offset, unit.x + rules.hub_pin_offset):
+            style = f'class="lo {nets[unit.mass]}"'
+            pen.box((x - pin, unit.y - pin), (x + pin, unit.y + pin), style, f"hub of {unit.mass}")
+        room = rules.unit_left + rules.unit_right - 8.0
+        pen.text(
+            unit.x, unit.y + rules.row_pitch / 2 - 0.3 - NAME_TEXT, unit.mass, 'class="ln"', room, NAME_TEXT
+        )  # fmt: skip
 
-    def add(self, kind: str, attributes: str, title: str) -> None:
-        self.lines.append(f"<{kind} {attributes}><title>{escape(title)}</title></{kind}>")
 
-    def polygon(self, points: tuple[tuple[float, float], ...], fill: str, stroke: str, title: str) -> None:
-        where = " ".join(",".join(self.at(x, y)) for x, y in points)
-        self.add("polygon", f'points="{where}" fill="{fill}" stroke="{stroke}" stroke-width="1"', title)
-
-    def box(self, x0: float, y0: float, x1: float, y1: float, fill: str, opacity: float, title: str) -> None:
-        x, y = self.at(min(x0, x1), max(y0, y1))
-        size = f'width="{_n(abs(x1 - x0))}" height="{_n(abs(y1 - y0))}"'
-        self.add("rect", f'x="{x}" y="{y}" {size} fill="{fill}" fill-opacity="{opacity:g}"', title)
-
-    def leaf(self, x0: float, y: float, x1: float, colour: str, title: str) -> None:
-        """A meander, as a zigzag."""
-        count = max(4, 2 * round((x1 - x0) / 3))
-        points = [(x0 + (x1 - x0) * k / count, y + (0.0, 2.0, 0.0, -2.0)[k % 4]) for k in range(count + 1)]
-        self.line(points, 0.6, colour, "", title)
-
-    def dotted(self, x0: float, y0: float, x1: float, y1: float, colour: str, title: str) -> None:
-        self.line([(x0, y0), (x1, y1)], 1.0, colour, ' stroke-dasharray="1.2 0.8"', title)
-
-    def path(self, points: tuple[tuple[float, float], ...], width: float, colour: str, title: str) -> None:
-        self.line(list(points), width, colour, ' stroke-opacity="0.85"', title)
-
-    def line(self, points: list[tuple[float, float]], width: float, colour: str, more: str, title: str) -> None:
-        where = " ".join(",".join(self.at(x, y)) for x, y in points)
-        attributes = f'points="{where}" fill="none" stroke="{colour}" stroke-width="{_n(width)}"{more}'
-        self.add("polyline", attributes, title)
-
-    def disc(self, x: float, y: float, radius: float, title: str) -> None:
-        cx, cy = self.at(x, y)
-        self.add("circle", f'cx="{cx}" cy="{cy}" r="{_n(radius)}" fill="{POST}"', title)
-
-    def label(self, x: float, y: float, text: str, size: float, anchor: str = "middle") -> None:
-        at_x, at_y = self.at(x, y)
-        where = f'x="{at_x}" y="{at_y}" font-size="{_n(size)}" text-anchor="{anchor}" fill="#222"'
-        self.lines.append(f"<text {where}>{escape(text)}</text>")
+def _ports(pen: Pen, network: Network, placement: Placement, grow: float) -> None:
+    sensors = {port.bit for port in network.sensors}
+    for port in placement.ports:
+        x, y = port.normal
+        anchor = "middle" if abs(y) > abs(x) else "start" if x > 0 else "end"
+        reach = (13.0 if anchor == "middle" else 9.0) * grow
+        sensor = port.bit in sensors
+        tip, base = (2.2, 6.4) if sensor else (6.4, 2.2)
+        corners = [
+            (port.x + grow * (along * x + aside * y), port.y + grow * (along * y - aside * x))
+            for along, aside in ((tip, 0.0), (base, 2.2), (base, -2.2))
+        ]
+        words = f"{'sensor' if sensor else 'actuator'} {port.bit} on {port.line}, mass {port.mass}"
+        pen.polygon(corners, 'class="lt"', words)
+        at = (port.x + reach * x, port.y - 1.8 * grow + reach * y)
+        pen.text(*at, port.bit, f'class="lt" font-size="{number(PORT_TEXT * grow)}" text-anchor="{anchor}"')

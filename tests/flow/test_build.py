@@ -54,7 +54,7 @@ def test_the_report_has_the_contract_s_keys_and_says_that_all_holds(built):
 def test_every_promised_file_is_there_and_hashed(built):
     files = report(built)["files"]
     wanted = [f"{name}.json" for name in ("device", "netlist", "network", "placement", "layout")]
-    wanted += ["voter.step", "voter.3mf", "views/stack.png"]
+    wanted += ["voter.step", "voter.3mf", "views/stack.png", "views/layout.svg"]
     wanted += [f"plates/{plate}.{kind}" for plate in PLATES for kind in ("step", "stl", "dxf", "svg")]
     wanted += [f"views/plate-{plate}.png" for plate in PLATES if plate != "shims"]
     assert set(wanted) <= set(files)
