@@ -37,8 +37,8 @@ class Stage:
         self.shown: tuple[str, ...] = model.plates
         self.found: tuple[int, ...] = ()
         self._explode = 0.0
-        self._displacements: Floats | None = None
-        self._meshes = []
+        self.moves = 0  # how often the bodies have been moved
+        self.meshes = []
         self.actors = []
         self._marked: list[Any] = []
         plotter.set_background("white")
@@ -58,7 +58,7 @@ class Stage:
                 reset_camera=False,
                 render=False,
             )
-            self._meshes.append(mesh)
+            self.meshes.append(mesh)
             self.actors.append(actor)
 
     @property
@@ -82,7 +82,7 @@ class Stage:
     def points(self, numbers: Collection[int] | None = None) -> Floats:
         """float[n, 3], mm: points of the bodies shown, or of the bodies called for, where they now stand."""
         found = []
-        for group, mesh in zip(self.model.groups, self._meshes, strict=True):
+        for group, mesh in zip(self.model.groups, self.meshes, strict=True):
             if numbers is None:
                 if group.plate in self.shown:
                     found.append(np.asarray(mesh.points))
@@ -102,15 +102,16 @@ class Stage:
 
     def stand(self, *, explode: float, displacements: Floats | None) -> None:
         """Take the plates apart (0 to 1) and move the references (float[r, 2], mm; None: as assembled)."""
-        self._explode, self._displacements = explode, displacements
-        for group, mesh in zip(self.model.groups, self._meshes, strict=True):
+        self._explode = explode
+        self.moves += 1
+        for group, mesh in zip(self.model.groups, self.meshes, strict=True):
             mesh.points[:] = group.placed(explode * self.model.apart, displacements)
             mesh.GetPoints().Modified()
             mesh.Modified()
 
     def paint(self, colours: Colours) -> None:
         """Colour the bodies, uint8[b, 3]."""
-        for group, mesh in zip(self.model.groups, self._meshes, strict=True):
+        for group, mesh in zip(self.model.groups, self.meshes, strict=True):
             mesh.cell_data["rgb"][:] = colours[group.body]
             mesh.GetCellData().Modified()
             mesh.GetCellData().GetArray("rgb").Modified()
@@ -124,7 +125,7 @@ class Stage:
         self._marked = []
         for actor in self.actors:
             actor.GetProperty().SetOpacity(_AROUND if numbers else 1.0)
-        for number, (group, mesh) in enumerate(zip(self.model.groups, self._meshes, strict=True)):
+        for number, (group, mesh) in enumerate(zip(self.model.groups, self.meshes, strict=True)):
             faces = group.faces[np.isin(group.body, self.found)]
             if not len(faces):
                 continue

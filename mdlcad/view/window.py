@@ -18,7 +18,7 @@ from mdlcad.view.scene import Look, Scene
 from mdlcad.view.stage import Stage
 from mdlcad.view.still import arrange, moment, moment_of
 
-_HELP = """plates     1 to 9, 0 and so on: click the boxes
+_HELP = """plates     click the boxes
 apart      x (or the slider)
 colours    c
 camera     v next, b back, r all of it
@@ -81,16 +81,19 @@ class Controls:
         self._frame = 0
         self._picker = vtk.vtkCellPicker()
         self._picker.SetTolerance(0.0)
+        self._locators: list[Any] = []
+        self._located = -1
         self._slider: Any = None
         arrange(stage, scene, look, self._now)
 
     def attach(self) -> None:
         """Put the widgets on the plotter and listen to keys and mouse."""
         plotter = self.stage.plotter
-        for actor in self.stage.actors:
+        for mesh in self.stage.meshes:
             locator = vtk.vtkStaticCellLocator()
-            locator.SetDataSet(actor.GetMapper().GetInput())
+            locator.SetDataSet(mesh)
             self._picker.AddLocator(locator)
+            self._locators.append(locator)
         interactor = plotter.iren.interactor
         plotter.iren.clear_key_event_callbacks()
         for event, handler in (
@@ -99,15 +102,18 @@ class Controls:
             ("TimerEvent", lambda *_: self.tick()),
         ):
             interactor.AddObserver(event, handler)
-        self._quiet_style(interactor)
+        plotter.iren.style = _quiet_style()
         self._slider = plotter.add_slider_widget(
             self.apart,
             (0.0, 1.0),
             value=self.stage.explode,
             title="apart",
-            pointa=(0.72, 0.06),
+            pointa=(0.80, 0.06),
             pointb=(0.97, 0.06),
             style="modern",
+            title_height=0.018,
+            slider_width=0.012,
+            tube_width=0.012,
             interaction_event="always",
         )
         for number, plate in enumerate(self.scene.model.plates):
@@ -179,6 +185,13 @@ class Controls:
 
     def point(self, x: int, y: int) -> None:
         """The mouse is at (x, y) pixels: show the card of what is there."""
+        if self.playing:
+            return
+        if self._located != self.stage.moves:
+            # a locator does not notice by itself that the points of its mesh have moved
+            for locator in self._locators:
+                locator.ForceBuildLocator()
+            self._located = self.stage.moves
         if not self._picker.Pick(x, y, 0, self.stage.plotter.renderer):
             return
         body = self.stage.body_at(self._picker.GetActor(), self._picker.GetCellId())
@@ -203,19 +216,27 @@ class Controls:
         self.stage.look(pose(self.preset, points, self.stage.aspect))
 
     def write(self) -> None:
-        """The words in the window's corners."""
+        """The words in the window's corners: what is going on and pointed at, and what the colours mean."""
         plotter = self.stage.plotter
         head = self._now.title if self.typed is None else f"search: {self.typed}_"
-        plotter.add_text(head, position="upper_left", font_size=9, color="black", name="head", render=False)
-        legend = "   ".join(key.words for key in self.scene.painter.legend(self.colour))
         plotter.add_text(
-            f"colours: {self.colour.value}   {legend}\n{self.card or 'h: help'}",
-            position="upper_right",
-            font_size=8,
+            f"{head}\n\n{self.card or 'h: help'}",
+            position="upper_left",
+            font_size=9,
             color="black",
-            name="card",
             font="courier",
+            name="head",
             render=False,
+        )
+        plotter.remove_legend(render=False)
+        keys = self.scene.painter.legend(self.colour)
+        plotter.add_legend(
+            [[key.words, key.colour] for key in keys],
+            face="rectangle",
+            loc="upper right",
+            size=(0.17, 0.026 * len(keys)),
+            border=False,
+            background_opacity=0.0,
         )
         plotter.render()
 
@@ -249,9 +270,9 @@ class Controls:
         elif code and code.isprintable():
             self.typed = typed + code
 
-    @staticmethod
-    def _quiet_style(interactor: Any) -> None:
-        """Turning and zooming as usual, but VTK's own keys (w wireframe, e exit ...) off: letters are ours."""
-        style = vtk.vtkInteractorStyleTrackballCamera()
-        style.AddObserver("CharEvent", lambda *_: None)
-        interactor.SetInteractorStyle(style)
+
+def _quiet_style() -> Any:
+    """Turning and zooming as usual, but VTK's own keys (w wireframe, e exit ...) off: letters are ours."""
+    style = vtk.vtkInteractorStyleTrackballCamera()
+    style.AddObserver("CharEvent", lambda *_: None)
+    return style
