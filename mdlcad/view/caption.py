@@ -26,7 +26,7 @@ def captioned(image: Colours, title: str, keys: Sequence[Key], card: Card | None
     picture = Image.new("RGB", (edge + panel, height), "white")
     picture.paste(Image.fromarray(np.ascontiguousarray(image)), (0, 0))
     draw = ImageDraw.Draw(picture, "RGBA")
-    size = max(11, round(picture.height / 62))
+    size = max(13, round(picture.height / 62))
     font = ImageFont.load_default(size)
     pad, line = size * 0.8, size * 1.45
     for number, row in enumerate(_wrapped(draw, title, font, picture.width - 2 * pad)):

@@ -108,7 +108,7 @@ function start(facts, arrays) {
     }
     if (!numbers.length) return;
     const width = canvas.clientWidth, wide = width > 720;
-    const free = wide ? { left: 276 / width, right: now.found.length ? Math.min(0.3, 360 / width) : 0, top: 0,
+    const free = wide ? { left: 276 / width, right: now.found.length ? Math.min(0.4, 360 / width) : 0, top: 0,
       bottom: 64 / canvas.clientHeight } : { left: 0, right: 0, top: now.found.length ? 0.44 : 0.08, bottom: 0.14 };
     camera.fit(low, high, width / canvas.clientHeight, free);
   }
