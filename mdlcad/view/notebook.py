@@ -109,6 +109,7 @@ class Build:
         design = html.escape(self.scene.built.report.design)
         return (
             '<div style="display: flex; flex-wrap: wrap; gap: 24px; align-items: center">'
-            f'<img alt="the device {design}" style="max-width: 560px; width: 100%" src="data:image/png;base64,{source}">'
+            f'<img alt="the device {design}" style="max-width: 560px; width: 100%" '
+            f'src="data:image/png;base64,{source}">'
             f"<div><h3>{design}</h3><table>{rows}</table></div></div>"
         )
