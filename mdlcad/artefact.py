@@ -19,6 +19,10 @@ from mdlcad.errors import UsageError
 T = TypeVar("T")
 
 
+class ShapeError(UsageError):
+    """A file of a build is whole JSON, but not of the shape that this version gives it."""
+
+
 def to_json(artefact: Any) -> bytes:
     """Canonical JSON bytes of a dataclass, list or dict artefact."""
     return msgspec.json.format(msgspec.json.encode(artefact), indent=2) + b"\n"
@@ -38,7 +42,8 @@ def load(folder: Path, name: str, kind: type[T]) -> T:
     """The artefact ``name`` (a file name) of a build folder.
 
     Raises:
-        UsageError: the file is missing, truncated, or not of the shape of ``kind``; the message names it.
+        ShapeError: it is JSON, but not of the shape of ``kind``.
+        UsageError: the file is missing or truncated. Either message names it.
     """
     path = folder / name
     try:
@@ -50,7 +55,7 @@ def load(folder: Path, name: str, kind: type[T]) -> T:
     except OSError as problem:
         raise UsageError(f"{path}: cannot be read: {problem.strerror}") from None
     except msgspec.ValidationError as problem:
-        raise UsageError(f"{path}: does not have the shape of this artefact ({problem}); build it again") from None
+        raise ShapeError(f"{path}: does not have the shape of this artefact ({problem}); build it again") from None
     except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as problem:
         raise UsageError(f"{path}: is not whole JSON ({problem}); build it again") from None
 

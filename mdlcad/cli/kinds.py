@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+from pathlib import Path
 
 HOLDS, FAILS, UNUSABLE = 0, 1, 2
 
@@ -43,6 +44,22 @@ def show(artefact: object) -> None:
     from mdlcad.artefact import to_json
 
     sys.stdout.write(to_json(artefact).decode())
+
+
+def write_output(path: Path, data: bytes) -> None:
+    """A file that the user asked for.
+
+    Raises:
+        UsageError: it cannot be written there.
+    """
+    from mdlcad.artefact import write_atomic
+    from mdlcad.errors import UsageError
+
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write_atomic(path, data)
+    except OSError as problem:
+        raise UsageError(f"{path}: cannot be written: {problem.strerror}") from None
 
 
 def verdict(broken: list[str]) -> int:

@@ -7,6 +7,7 @@ from typing import Any
 import msgspec
 
 from mdlcad.artefact import to_json
+from mdlcad.compare.change import Comparison
 from mdlcad.errors import UsageError
 from mdlcad.language import Device
 from mdlcad.mechanics import Sizing
@@ -36,6 +37,7 @@ ARTEFACTS: dict[str, Any] = {
     "extraction": tuple[LvsResult, Proof],
     "report": Report,
     "result": ScenarioResult,
+    "diff": Comparison,
 }
 
 

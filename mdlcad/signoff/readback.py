@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import cadquery as cq
 from shapely import Polygon
 
 from mdlcad.errors import UsageError
@@ -29,6 +28,8 @@ def read_step(path: Path) -> tuple[ReadBody, ...]:
     Raises:
         UsageError: the file cannot be read, or holds a solid that is not one prism along z.
     """
+    import cadquery as cq  # the CAD kernel takes seconds to load, and LVS without files does not need it
+
     try:
         assembly = cq.Assembly.importStep(str(path))
     except (ValueError, RuntimeError, OSError) as problem:

@@ -15,11 +15,9 @@ VOTER = ROOT / "examples" / "voter.mdl"
 PLATES = ["base", "shims", "clock-2", "clock-1", "clock-0", "unit", "V", "H0", "H1", "H2", "H3", "cover"]
 
 
-@pytest.fixture(scope="module")
-def built(tmp_path_factory) -> Path:
-    folder = tmp_path_factory.mktemp("build") / "voter"
-    assert main(["build", str(VOTER), "-o", str(folder)]) == HOLDS
-    return folder
+@pytest.fixture
+def built(voter_build: Path) -> Path:
+    return voter_build
 
 
 @pytest.fixture

@@ -1,0 +1,1 @@
+"""Builds held against each other: two in every respect (``diff``), or many in figures (``history``)."""

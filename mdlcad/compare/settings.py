@@ -1,0 +1,32 @@
+"""What was asked for: design, cell library, process with all its figures, seed and version."""
+
+from __future__ import annotations
+
+from mdlcad.compare.change import Change, Sort
+from mdlcad.compare.fields import field_changes, worded
+from mdlcad.compare.folders import NotComparable
+from mdlcad.compare.pair import Findings, Pair
+from mdlcad.mechanics import Process
+
+_ASKED = ("design", "cells", "process", "seed", "version")
+
+
+def setting_changes(pair: Pair) -> Findings:
+    """Changes of the settings."""
+    before = {name: getattr(pair.a.facts, name) for name in _ASKED}
+    after = {name: getattr(pair.b.facts, name) for name in _ASKED}
+    changes = [
+        Change("setting", item.name, Sort.CHANGED, worded((item,)).removeprefix(f"{item.name} "), (item,))
+        for item in field_changes(before, after)
+    ]
+    notes = []
+    try:
+        a, b = pair.both("process.json", Process)
+    except NotComparable as problem:
+        notes.append(str(problem))
+    else:
+        changes += [
+            Change("process", item.name, Sort.CHANGED, worded((item,)).removeprefix(f"{item.name} "), (item,))
+            for item in field_changes(a, b, skip=frozenset({"name", "summary"}))
+        ]
+    return Findings(changes, notes)
