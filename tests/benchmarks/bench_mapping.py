@@ -16,11 +16,11 @@ from pathlib import Path
 from unittest.mock import patch
 
 from mdlcad.language import read_device
-from mdlcad.mapping import cover, greedy, mapper, selection, subject, tickring
+from mdlcad.mapping import cover, greedy, mapper, selection, subject
 from mdlcad.mapping.build import with_ring
 from mdlcad.mapping.library import Library, load_library
 from mdlcad.mapping.mapper import Effort
-from mdlcad.mapping.options import PHASES, Option, OptionGraph
+from mdlcad.mapping.options import Option, OptionGraph
 from mdlcad.mapping.plan import Key, PlannedMass, Role
 from mdlcad.mapping.registers import structural_choices
 from mdlcad.mapping.relieve import relieve
@@ -34,8 +34,10 @@ DESIGNS = ("mazerobot", "lock", "traffic_light", "turnstile")
 
 Allowed = Callable[[Key, Option], bool]
 
+USUAL = Effort()
 
-def masses_of(netlist: Netlist, library: Library, effort: Effort = Effort()) -> tuple[PlannedMass, ...]:
+
+def masses_of(netlist: Netlist, library: Library, effort: Effort = USUAL) -> tuple[PlannedMass, ...]:
     """All masses that the mapper plans, ring and twins included."""
     graph, nets = mapper._make_subject(netlist)
     plan = mapper._make_plan(netlist, library, graph, nets, effort)

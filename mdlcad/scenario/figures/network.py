@@ -7,9 +7,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import FancyArrowPatch
+from scipy.spatial import cKDTree
 
 from mdlcad.network.model import CouplingKind, MassKind, Network
-from mdlcad.scenario.figures.page import FAINT, INK, NEGATIVE, PAPER, PHASES, POSITIVE, bare, new_figure, png
+from mdlcad.scenario.figures.page import FAINT, INK, LATCH, NEGATIVE, PAPER, PHASES, POSITIVE, bare, new_figure, png
 from mdlcad.scenario.seats import Seats
 
 _INCHES = 8.0
@@ -17,10 +18,16 @@ _INCHES = 8.0
 
 def picture(network: Network, seats: Seats) -> bytes:
     """PNG of the network."""
-    figure, axes = framed(seats, _INCHES)
+    return png(network_figure(network, seats, _INCHES))
+
+
+def network_figure(network: Network, seats: Seats, inches: float) -> Figure:
+    """The network on a page whose larger side is ``inches``; every mass is a group "mass NAME" in it."""
+    figure, axes = framed(seats, inches)
     outline(axes, seats)
-    # smaller masses in larger networks, down to where they are dots
+    # smaller masses in larger networks, down to where they are dots; and room for a coupling between any two
     side = float(np.clip(150.0 / np.sqrt(len(network.masses)), 4.0, 19.0))
+    side = max(2.5, min(side, 0.6 * _closest(seats) * _points_a_unit(axes)))
     couplings(axes, network, seats, side)
     ports = {port.mass for port in (*network.sensors, *network.actuators)}
     registers = {register.mass for register in network.registers}
@@ -29,8 +36,13 @@ def picture(network: Network, seats: Seats) -> bytes:
         marker = "s" if mass.name in ports else "D" if mass.kind is MassKind.TICK else "o"
         edge = 2.4 if mass.name in registers else 0.9
         colour = PHASES[mass.phase % len(PHASES)]
-        axes.plot(x, y, marker, ms=side * (0.8 if marker == "D" else 1.0), mfc=colour, mec=INK, mew=edge, zorder=3)
-        if mass.bias and side > 7.0:
+        axes.plot(
+            *(x, y, marker),
+            **{"ms": side * (0.8 if marker == "D" else 1.0), "mfc": colour, "mec": INK, "mew": edge},
+            zorder=3,
+            gid=f"mass {mass.name}",
+        )
+        if mass.bias and side > 5.0:
             # the bias force is -q
             axes.text(
                 x,
@@ -48,14 +60,29 @@ def picture(network: Network, seats: Seats) -> bytes:
     _port_names(axes, seats)
     _legend(axes, network)
     negative = sum(coupling.strength < 0 for coupling in network.couplings)
-    where = "in their slots" if seats.placed else "not placed yet: spread for the eye"
+    where = "where they are placed" if seats.placed else "not placed yet: spread for the eye"
     axes.set_title(
         f"{network.design}: {len(network.masses)} masses ({where}), {len(network.couplings)} couplings, "
         f"{negative} negative",
         fontsize=10.5,
         color=INK,
     )
-    return png(figure)
+    return figure
+
+
+def _closest(seats: Seats) -> float:
+    """Least distance of two masses, in units of the seats."""
+    spots = np.array(list(seats.masses.values()))
+    if len(spots) < 2:
+        return float("inf")
+    distance, _ = cKDTree(spots).query(spots, k=2)
+    return float(distance[:, 1].min())
+
+
+def _points_a_unit(axes: Axes) -> float:
+    """Typographic points that a unit of the seats takes on the page."""
+    low, high = axes.get_xlim()
+    return float(axes.figure.get_figwidth()) * 72.0 / (high - low)
 
 
 def framed(seats: Seats, inches: float) -> tuple[Figure, Axes]:
@@ -79,11 +106,13 @@ def outline(axes: Axes, seats: Seats) -> None:
 
 
 def couplings(axes: Axes, network: Network, seats: Seats, side: float, *, arrows: bool = True) -> None:
-    """Couplings as arcs between masses ``side`` points wide, source to target; negative ones red, latches dashed."""
+    """Couplings as arcs between masses ``side`` points wide, source to target; negative ones red, those of latches, whose
+    source acts on the target's stiffness, dashed in a colour of their own."""
     strongest = max((abs(coupling.strength) for coupling in network.couplings), default=1.0)
     thin = 1.0 if len(network.couplings) < 300 else 0.5
     for coupling in network.couplings:
-        red = coupling.strength < 0
+        latch = coupling.kind is CouplingKind.LATCH
+        red = coupling.strength < 0 and not latch
         axes.add_patch(
             FancyArrowPatch(
                 seats.masses[coupling.source],
@@ -94,11 +123,11 @@ def couplings(axes: Axes, network: Network, seats: Seats, side: float, *, arrows
                 mutation_scale=min(8.0, 1.0 + 0.5 * side),
                 shrinkA=0.25 * side,
                 shrinkB=(0.48 if arrows else 0.25) * side,
-                color=NEGATIVE if red else POSITIVE,
-                lw=thin * (0.5 + 1.1 * abs(coupling.strength) / strongest),
-                ls="--" if coupling.kind is CouplingKind.LATCH else "-",
-                alpha=0.95 if red else 0.8,
-                zorder=2 if red else 1,
+                color=LATCH if latch else NEGATIVE if red else POSITIVE,
+                lw=thin * (1.6 if latch else 0.5 + 1.1 * abs(coupling.strength) / strongest),
+                ls=(0, (2.5, 1.2)) if latch else "-",
+                alpha=0.95 if red or latch else 0.8,
+                zorder=2 if red or latch else 1,
             )
         )
 
@@ -136,12 +165,18 @@ def _legend(axes: Axes, network: Network) -> None:
     handles = [
         dot(PHASES[phase % len(PHASES)], "o", 0.9, f"clock wave {phase}") for phase in range(network.dynamics.phases)
     ]
+    latches = (
+        [Line2D([], [], color=LATCH, lw=1.6, ls=(0, (2.5, 1.2)), label="latch coupling")]
+        if any(coupling.kind is CouplingKind.LATCH for coupling in network.couplings)
+        else []
+    )
     handles += [
         dot("white", "s", 0.9, "of a sensor or actuator"),
         dot("white", "o", 2.4, "register"),
         dot("white", "D", 0.9, "tick ring"),
         Line2D([], [], color=POSITIVE, lw=1.6, label="coupling"),
         Line2D([], [], color=NEGATIVE, lw=1.6, label="negative coupling"),
+        *latches,
         Line2D([], [], ls="", marker="$\\pm$", color=INK, ms=8, label="sign of the bias force"),
     ]
     axes.legend(

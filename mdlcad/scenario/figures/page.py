@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 
+import matplotlib
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
@@ -14,6 +15,7 @@ PAPER = "#f4f4f1"
 ZERO = "#3b6ea8"
 ONE = "#d9822b"
 NEGATIVE = "#c8202f"
+LATCH = "#7a2fb5"
 POSITIVE = "#8d939e"
 GOOD = "#2e8b57"
 
@@ -34,6 +36,15 @@ def png(figure: Figure) -> bytes:
     """The figure as PNG, cropped to what is drawn; the file names no software and no date."""
     stream = io.BytesIO()
     figure.savefig(stream, format="png", bbox_inches="tight", pad_inches=0.12, metadata={"Software": None})
+    return stream.getvalue()
+
+
+def svg(figure: Figure) -> bytes:
+    """The figure as SVG, cropped likewise; text stays text."""
+    stream = io.BytesIO()
+    with matplotlib.rc_context({"svg.hashsalt": "mdlcad", "svg.fonttype": "none"}):
+        nothing = {"Date": None, "Creator": None, "Format": None, "Type": None}
+        figure.savefig(stream, format="svg", bbox_inches="tight", pad_inches=0.12, metadata=nothing)
     return stream.getvalue()
 
 
