@@ -90,6 +90,7 @@ def build(request: Request, say: Callable[[str], None]) -> tuple[Path, list[str]
                 data = step.artefact(state)
                 write_atomic(folder / f"{step.name}.json", data)
                 records.append(StageRecord(step.name, 0.0, checksum(data)))
+            step.draw(job, state)
         for step in steps:
             state, record = _run(step, job, state, say)
             records.append(record)
@@ -161,6 +162,7 @@ def _run(step: Step, job: Job, state: State, say: Callable[[str], None]) -> tupl
         data = step.artefact(state)
         digest = checksum(data)
         write_atomic(job.folder / f"{step.name}.json", data)
+        step.draw(job, state)
     else:
         fresh = sorted(set(state.files) - before)
         digest = checksum("".join(f"{name} {checksum((job.folder / name).read_bytes())}\n" for name in fresh).encode())

@@ -2,15 +2,39 @@
 
 from __future__ import annotations
 
-from mdlcad.errors import UsageError
-from mdlcad.flow.steps import STEPS, Step
+from collections.abc import Callable
+from dataclasses import replace
+
+from mdlcad.artefact import to_json
+from mdlcad.errors import SignoffError, UsageError
+from mdlcad.flow.state import Job, State, need
+from mdlcad.flow.steps import STEPS, Step, draw_placement, port_places
 from mdlcad.mapping import Library
 from mdlcad.mapping.two_phase import TwoPhaseLibrary
+from mdlcad.placement.check_grid import check_grid
+from mdlcad.placement.unit_grid import Placer, Seating, place_on_grid
 
-NETWORK_STEPS: tuple[Step, ...] = tuple(
-    step for step in STEPS if step.name in ("device", "netlist", "network", "proof")
+
+def _place(job: Job, state: State, progress: Callable[[str], None]) -> State:
+    device, network = need(state.device), need(state.network)
+    boundary, ports = tuple(line.start for line in device.boundary), port_places(device)
+    grid = place_on_grid(network, boundary, ports, Placer.ANNEAL, Seating.ON_BOUNDARY, job.seed)
+    found = check_grid(network, grid, boundary, ports)
+    if found:
+        raise SignoffError("; ".join(found[:3]))
+    return replace(state, grid=grid)
+
+
+def _words(state: State) -> str:
+    grid = need(state.grid)
+    return f"{len(grid.masses)} masses on the grid, length {grid.length:.0f}, {grid.crossings} crossings"
+
+
+GRID_STEPS: tuple[Step, ...] = (
+    *(step for step in STEPS if step.name in ("device", "netlist", "network", "proof")),
+    Step("placement", ("device", "network"), ("grid",), _place, _words, lambda s: to_json(s.grid), draw_placement),
 )
-"""The steps with a library whose springs have no parts yet."""
+"""The steps with a library whose springs have no parts yet: its masses are placed, without a size."""
 
 
 def steps_with(library: Library, last: str | None) -> tuple[Step, ...]:
@@ -21,11 +45,11 @@ def steps_with(library: Library, last: str | None) -> tuple[Step, ...]:
     """
     if not isinstance(library, TwoPhaseLibrary):
         return STEPS
-    beyond = {step.name for step in STEPS} - {step.name for step in NETWORK_STEPS}
+    beyond = {step.name for step in STEPS} - {step.name for step in GRID_STEPS}
     if last is None or last in beyond:
         raise UsageError(
             f"the cell library {library.name} couples masses by springs that the power clock switches and opens "
             "latches by springs that multiply, for which there are no parts yet; a whole build would have to leave "
-            f"them out. Build with --to {NETWORK_STEPS[-1].name}, or with --cells parametron"
+            f"them out. Build with --to {GRID_STEPS[-1].name}, or with --cells parametron"
         )
-    return NETWORK_STEPS
+    return GRID_STEPS

@@ -10,11 +10,14 @@ from mdlcad.artefact import to_json
 from mdlcad.compare.change import Comparison
 from mdlcad.errors import UsageError
 from mdlcad.language import Device
+from mdlcad.mapping.library import Library
+from mdlcad.mapping.two_phase import TwoPhaseLibrary
 from mdlcad.mechanics import Sizing
 from mdlcad.mechanics.drive import DriveLoads
 from mdlcad.network.model import Network
 from mdlcad.parts.store import Parts
 from mdlcad.placement.placement import Placement
+from mdlcad.placement.unit_grid import GridPlacement
 from mdlcad.proof.outcome import Proof
 from mdlcad.report.report import Report
 from mdlcad.routing.layout import Layout
@@ -30,6 +33,9 @@ ARTEFACTS: dict[str, Any] = {
     "proof": Proof,
     "sizing": Sizing,
     "placement": Placement,
+    "placement-on-grid": GridPlacement,
+    "cells-parametron": Library,
+    "cells-two_phase": TwoPhaseLibrary,
     "layout": Layout,
     "parts": Parts,
     "drc": DesignRules,

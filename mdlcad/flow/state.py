@@ -14,6 +14,7 @@ from mdlcad.network.model import Network
 from mdlcad.parts.body import Body
 from mdlcad.parts.stiffness import CarrierStiffness
 from mdlcad.placement.placement import Placement
+from mdlcad.placement.unit_grid import GridPlacement
 from mdlcad.proof.outcome import Proof
 from mdlcad.routing.layout import Layout
 from mdlcad.signoff.lvs import LvsResult
@@ -43,7 +44,11 @@ class Job:
 
 @dataclass(frozen=True, slots=True)
 class State:
-    """The artefacts made so far, each by the step of its name; a step returns a new state."""
+    """The artefacts made so far, each by the step of its name; a step returns a new state.
+
+    Attributes:
+        grid: what the placement is with a library that has no parts yet.
+    """
 
     device: Device | None = None
     netlist: Netlist | None = None
@@ -51,6 +56,7 @@ class State:
     proof: Proof | None = None
     sizing: Sizing | None = None
     placement: Placement | None = None
+    grid: GridPlacement | None = None
     layout: Layout | None = None
     bodies: tuple[Body, ...] | None = None
     carriers: tuple[CarrierStiffness, ...] = ()

@@ -44,6 +44,7 @@ class Step:
         run: does it. Raises InputError or UsageError for bad input, SignoffError if what it made does not hold.
         summary: one line about what came out.
         artefact: the bytes of what it made, kept as NAME.json; None if it made files of its own.
+        draw: writes pictures of that artefact beside it, whether it was made or taken from a folder.
     """
 
     name: str
@@ -52,6 +53,7 @@ class Step:
     run: Callable[[Job, State, Callable[[str], None]], State]
     summary: Callable[[State], str]
     artefact: Callable[[State], bytes] | None
+    draw: Callable[[Job, State], None] = lambda job, state: None
 
 
 Progress = Callable[[str], None]
@@ -171,6 +173,13 @@ def _picture(job: Job, state: State, progress: Progress) -> State:
     return replace(state, files=state.files + write_views(need(state.bodies), job.folder, progress))
 
 
+def draw_placement(job: Job, state: State) -> None:
+    """Write views/placement.svg and .png."""
+    from mdlcad.view.placement import write_placement_views  # the plotting library takes a second to load
+
+    write_placement_views(need(state.network), job.folder)
+
+
 def port_places(device: Device) -> tuple[PortPlace, ...]:
     """Every sensor and actuator bit at its place on the boundary, in grid units."""
     lines = {line.name: line for line in device.boundary}
@@ -247,6 +256,7 @@ STEPS: tuple[Step, ...] = (
         _place_and_route,
         lambda s: f"{len(need(s.placement).column_x)} columns x {len(need(s.placement).row_y)} rows",
         lambda s: to_json(s.placement),
+        draw_placement,
     ),
     Step(
         "layout",

@@ -27,7 +27,7 @@ def network_figure(network: Network, seats: Seats, inches: float) -> Figure:
     outline(axes, seats)
     # smaller masses in larger networks, down to where they are dots; and room for a coupling between any two
     side = float(np.clip(150.0 / np.sqrt(len(network.masses)), 4.0, 19.0))
-    side = max(2.5, min(side, 0.6 * _closest(seats) * _points_a_unit(axes)))
+    side = max(2.5, min(side, 0.6 * _closest(seats) * _points_a_unit(figure, axes)))
     couplings(axes, network, seats, side)
     ports = {port.mass for port in (*network.sensors, *network.actuators)}
     registers = {register.mass for register in network.registers}
@@ -37,8 +37,13 @@ def network_figure(network: Network, seats: Seats, inches: float) -> Figure:
         edge = 2.4 if mass.name in registers else 0.9
         colour = PHASES[mass.phase % len(PHASES)]
         axes.plot(
-            *(x, y, marker),
-            **{"ms": side * (0.8 if marker == "D" else 1.0), "mfc": colour, "mec": INK, "mew": edge},
+            x,
+            y,
+            marker,
+            ms=side * (0.8 if marker == "D" else 1.0),
+            mfc=colour,
+            mec=INK,
+            mew=edge,
             zorder=3,
             gid=f"mass {mass.name}",
         )
@@ -79,10 +84,10 @@ def _closest(seats: Seats) -> float:
     return float(distance[:, 1].min())
 
 
-def _points_a_unit(axes: Axes) -> float:
+def _points_a_unit(figure: Figure, axes: Axes) -> float:
     """Typographic points that a unit of the seats takes on the page."""
     low, high = axes.get_xlim()
-    return float(axes.figure.get_figwidth()) * 72.0 / (high - low)
+    return float(figure.get_figwidth()) * 72.0 / (high - low)
 
 
 def framed(seats: Seats, inches: float) -> tuple[Figure, Axes]:
@@ -106,8 +111,8 @@ def outline(axes: Axes, seats: Seats) -> None:
 
 
 def couplings(axes: Axes, network: Network, seats: Seats, side: float, *, arrows: bool = True) -> None:
-    """Couplings as arcs between masses ``side`` points wide, source to target; negative ones red, those of latches, whose
-    source acts on the target's stiffness, dashed in a colour of their own."""
+    """Couplings as arcs between masses ``side`` points wide, source to target; negative ones red, those of latches
+    (whose source acts on the target's stiffness) dashed in a colour of their own."""
     strongest = max((abs(coupling.strength) for coupling in network.couplings), default=1.0)
     thin = 1.0 if len(network.couplings) < 300 else 0.5
     for coupling in network.couplings:
