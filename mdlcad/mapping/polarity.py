@@ -11,51 +11,59 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from ortools.sat.python import cp_model
+from mdlcad.mapping.frustration import SignedGraph, least_frustration
 
-_DETERMINISTIC_TIME = 4.0
 _POSTS = 2
 
 
 def choose_polarity(
     masses: list[str], couplings: list[tuple[str, str, bool]], fixed: Iterable[str], biased: Iterable[str]
 ) -> dict[str, int]:
-    """+1 or -1 for every mass; the fewest negative couplings that were found (the least there are, unless the network
-    is too large for the time allowed) among the choices with the fewest posts too many.
+    """+1 or -1 for every mass; the fewest negative couplings among the choices with the fewest posts too many.
 
     Args:
         couplings: source, target, and whether the coupling is negative while all masses are upright.
         fixed: masses that stay +1.
         biased: masses with a bias leaf.
     """
-    model = cp_model.CpModel()
-    turned = {name: model.new_bool_var(name) for name in masses}
-    for name in sorted(fixed):
-        model.add(turned[name] == 0)
-    negative = []
-    rockers: dict[str, list[cp_model.IntVar]] = {name: [] for name in masses}
-    for source, target, inverting in couplings:
-        result = model.new_bool_var(f"{source}->{target}")
-        # result = inverting xor turned[source] xor turned[target]
-        model.add_bool_xor([turned[source], turned[target], result, inverting, True])
-        negative.append(result)
-        rockers[target].append(result)
+    # masses that stay as they are are one node: what joins two of them can not be changed
+    held = set(fixed)
+    node = {name: index + 1 for index, name in enumerate(name for name in masses if name not in held)}
+    ends = tuple((node.get(source, 0), node.get(target, 0)) for source, target, _ in couplings)
+    entering: dict[str, list[int]] = {name: [] for name in masses}
+    for index, (_, target, _) in enumerate(couplings):
+        entering[target].append(index)
     leaves = set(biased)
-    crowded = []
-    for name in masses:
-        room = _POSTS - (name in leaves)
-        if len(rockers[name]) > room:
-            excess = model.new_int_var(0, len(rockers[name]), f"crowded {name}")
-            model.add(excess >= sum(rockers[name]) - room)
-            crowded.append(excess)
-    model.minimize(sum(negative) + (len(negative) + 1) * sum(crowded))
-    for name in masses:
-        model.add_hint(turned[name], 0)
-    solver = cp_model.CpSolver()
-    solver.parameters.num_workers = 1
-    solver.parameters.random_seed = 1
-    solver.parameters.max_deterministic_time = _DETERMINISTIC_TIME
-    status = solver.solve(model)
-    if status not in (cp_model.OPTIMAL, cp_model.FEASIBLE):
-        raise RuntimeError("no choice of polarity was found in the time allowed")
-    return {name: -1 if solver.value(turned[name]) else 1 for name in masses}
+    rooms = ((tuple(entering[name]), _POSTS - (name in leaves)) for name in masses)
+    graph = SignedGraph(
+        nodes=len(node) + 1,
+        ends=ends,
+        negative=tuple(negative for _, _, negative in couplings),
+        groups=tuple((group, room) for group, room in rooms if len(group) > room),
+    )
+    chosen = least_frustration(graph).negative
+    turned = _signs(graph, chosen)
+    return {name: turned[node.get(name, 0)] for name in masses}
+
+
+def _signs(graph: SignedGraph, chosen: tuple[bool, ...]) -> list[int]:
+    """Signs that make all couplings but ``chosen`` positive, +1 for node 0 and for the first node of every part."""
+    beside: list[list[tuple[int, int]]] = [[] for _ in range(graph.nodes)]
+    for (a, b), negative, left in zip(graph.ends, graph.negative, chosen, strict=True):
+        if not left and a != b:
+            sign = -1 if negative else 1
+            beside[a].append((b, sign))
+            beside[b].append((a, sign))
+    signs = [0] * graph.nodes
+    for first in range(graph.nodes):
+        if signs[first]:
+            continue
+        signs[first] = 1
+        reached = [first]
+        while reached:
+            at = reached.pop()
+            for other, sign in beside[at]:
+                if not signs[other]:
+                    signs[other] = sign * signs[at]
+                    reached.append(other)
+    return signs
