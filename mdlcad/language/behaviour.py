@@ -15,9 +15,13 @@ from mdlcad.errors import Diagnostic
 from mdlcad.language.explain import shown
 from mdlcad.language.sections import Lexeme, LexemeKind, Sections
 from mdlcad.language.source import Source
+from mdlcad.language.unbuildable import UNBUILDABLE
 
 # system functions that only compute
-_HARMLESS_FUNCTIONS = ("$bits", "$clog2", "$high", "$left", "$low", "$right", "$signed", "$size", "$unsigned")
+_HARMLESS_FUNCTIONS = (
+    "$bits", "$clog2", "$countones", "$high", "$left", "$low", "$onehot", "$onehot0", "$right", "$signed", "$size",
+    "$unsigned",
+)  # fmt: skip
 _FILE_TASKS = (
     "$readmem", "$writemem", "$sreadmem", "$fopen", "$fclose", "$fscanf", "$fread", "$fwrite", "$fdisplay", "$fmonitor",
     "$fstrobe", "$fget", "$fseek", "$ftell", "$feof", "$fflush", "$ferror", "$rewind", "$ungetc", "$sdf", "$dump",
@@ -40,7 +44,7 @@ def check_verilog(source: Source, sections: Sections) -> Iterator[Diagnostic]:
         yield source.error(source.where(match.start()), message, "take it out")
     before: Lexeme | None = None
     for index, lexeme in enumerate(sections.verilog):
-        trouble = _refusal(lexeme) or _glue(source, sections.verilog, index, before)
+        trouble = _refusal(lexeme) or _word(sections.verilog, index) or _glue(source, sections.verilog, index, before)
         if trouble:
             yield source.error(source.where(lexeme.offset), *trouble)
         before = lexeme
@@ -94,6 +98,22 @@ def _refusal(lexeme: Lexeme) -> tuple[str, str] | None:
         case LexemeKind.OPEN_TEXT:
             return "a text that does not end on its line", 'close it with "'
     return None
+
+
+def _word(verilog: tuple[Lexeme, ...], index: int) -> tuple[str, str] | None:
+    """Message and hint if a word asks for what a device cannot do."""
+    lexeme = verilog[index]
+    if lexeme.kind is not LexemeKind.WORD:
+        return None
+    if lexeme.text == "import":
+        # a package of the same file; anything else is DPI, or could become it through a macro
+        if index + 1 < len(verilog) and verilog[index + 1].kind is LexemeKind.WORD:
+            return None
+        return "'import' would run code from outside the program", "write the function in Verilog"
+    if lexeme.text not in UNBUILDABLE or (index and verilog[index - 1].text.endswith(".")):
+        return None
+    wrong, mend = UNBUILDABLE[lexeme.text]
+    return f"'{lexeme.text}' {wrong}", mend
 
 
 def _glue(source: Source, verilog: tuple[Lexeme, ...], index: int, before: Lexeme | None) -> tuple[str, str] | None:

@@ -78,16 +78,18 @@ class Sections:
 
 
 def cut(source: Source) -> Sections:
-    """Find the Verilog: from the first ``module``, directive or attribute up to ``endmechanicalmodule``."""
+    """Find the Verilog: from the first ``module``, package, type, directive or attribute to ``endmechanicalmodule``."""
     verilog: list[Lexeme] = []
+    before: Lexeme | None = None
     lexemes = _lexemes(source.text)
     for lexeme in lexemes:
         if lexeme.kind is LexemeKind.OPEN_COMMENT:
             return _sections(verilog, lexeme.offset, False, (_open_comment(source, lexeme),))
         if lexeme.kind is LexemeKind.WORD and lexeme.text == "endmechanicalmodule":
             return _sections(verilog, lexeme.offset, True, _tail_findings(source, lexemes))
-        if verilog or _starts_verilog(lexeme):
+        if verilog or _starts_verilog(lexeme, before):
             verilog.append(lexeme)
+        before = lexeme
     missing = source.error(
         source.end(), "'endmechanicalmodule' is missing", "write it behind the last Verilog module, as the last word"
     )
@@ -101,9 +103,11 @@ def _lexemes(text: str) -> Iterator[Lexeme]:
             yield Lexeme(kind, match.group(), match.start())
 
 
-def _starts_verilog(lexeme: Lexeme) -> bool:
+def _starts_verilog(lexeme: Lexeme, before: Lexeme | None) -> bool:
     if lexeme.kind is LexemeKind.WORD:
-        return lexeme.text in ("module", "macromodule")
+        # the two further words may be names in a declaration, but never behind its end
+        behind = before is not None and before.text.endswith((";", "}"))
+        return lexeme.text in ("module", "macromodule") or (behind and lexeme.text in ("package", "typedef"))
     return lexeme.kind in (LexemeKind.DIRECTIVE, LexemeKind.ATTRIBUTE)
 
 

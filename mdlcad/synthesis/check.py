@@ -7,14 +7,15 @@ from typing import Any
 
 from mdlcad.errors import Diagnostic, InputError
 from mdlcad.language.device import Actuator, Device, Sensor
-from mdlcad.synthesis.cells import top_module
-from mdlcad.synthesis.yosys import YosysRun, diagnostic, locate, source_position
+from mdlcad.synthesis.cells import GATE_TYPES, REGISTER_TYPES, top_module
+from mdlcad.synthesis.spots import diagnostic, locate, source_position
+from mdlcad.synthesis.storage import check_storage
+from mdlcad.synthesis.wiring import check_wiring
+from mdlcad.synthesis.yosys import YosysRun
 
 CLOCK = "clk"
 
-_ASYNCHRONOUS = ("$adff", "$adffe", "$aldff", "$aldffe", "$dffsr", "$dffsre", "$sr")
-_LATCHES = ("$dlatch", "$adlatch", "$dlatchsr")
-_SYNCHRONOUS = ("$dff", "$dffe", "$sdff", "$sdffe", "$sdffce")
+_OPERATORS = {"$pow": "'**' with a variable exponent and a base other than 2"}
 
 
 def check_design(device: Device, run: YosysRun) -> None:
@@ -22,27 +23,63 @@ def check_design(device: Device, run: YosysRun) -> None:
 
     Raises:
         InputError: several top modules; ports that are not the device's sensors and actuators; a second clock, the
-            falling edge, an asynchronous reset or a latch; or what else Yosys found.
+            falling edge, an asynchronous reset or a latch; wires without a value or with several; what else was found.
     """
     module = top_module(run.raw)
-    found = _modules(device, run)
+    found = [diagnostic(device, item.line, item.column, item.message, item.hint) for item in run.findings]
+    if len(run.tops) > 1:
+        # the rest was looked at for one of them, and not necessarily the one that is meant
+        raise InputError(found + _modules(device, run.tops))
     found += _ports(device, module)
-    found += _storage(device, module)
-    # our own words first: Yosys stumbles over the same things later, in words about its cells
-    found = found or list(run.trouble)
+    found += check_storage(device, module, CLOCK)
+    if not run.findings:
+        # what slang found is often why a net has no value
+        found += check_wiring(device, module, run.log)
+    found = found or _no_gates(device, run)
     if found:
-        raise InputError(found)
+        raise InputError(_once_a_place(found))
 
 
-def _modules(device: Device, run: YosysRun) -> list[Diagnostic]:
+def _once_a_place(found: list[Diagnostic]) -> list[Diagnostic]:
+    """The first finding at every place: one mistake shows in several ways, and the earlier checks know it better."""
+    placed: dict[tuple[int, int], Diagnostic] = {}
+    for item in found:
+        placed.setdefault((item.line, item.column), item)
+    return list(placed.values())
+
+
+def _no_gates(device: Device, run: YosysRun) -> list[Diagnostic]:
+    """Findings about operators that Yosys has no gates for."""
+    hint = "write it with registers, wires, if, case, for and simpler operators"
+    if not run.netlist:
+        return [locate(device, r"\bmodule\b", "the behaviour uses something that cannot be turned into gates", hint)]
+    found = []
+    for _, cell in sorted(top_module(run.netlist)["cells"].items()):
+        if cell["type"] in (*GATE_TYPES, *REGISTER_TYPES, "$scopeinfo"):
+            continue
+        line, column = source_position(cell["attributes"].get("src", "")) or (device.where.line, device.where.column)
+        operator = _OPERATORS.get(cell["type"], f"the operation '{cell['type'].strip('$_')}'")
+        found.append(diagnostic(device, line, column, f"{operator} cannot be turned into gates", hint))
+    return found
+
+
+def _modules(device: Device, tops: tuple[str, ...]) -> list[Diagnostic]:
+    names = {sensor.name for sensor in device.sensors} | {actuator.name for actuator in device.actuators}
+
+    def fits(module: str) -> int:
+        text = re.search(rf"\bmodule\s+{re.escape(module)}\b.*?\bendmodule\b", device.verilog, re.S)
+        return len(names & set(re.findall(r"\w+", text[0]))) if text else 0
+
+    wanted = max(tops, key=lambda module: (fits(module), module))
     return [
         locate(
             device,
-            rf"\bmodule\s+{re.escape(name)}\b",
-            f"module '{name}' is used nowhere, so there are two behaviours",
-            "keep one top module, or instantiate this one in it",
+            rf"(?<=module )\s*{re.escape(name)}\b|\bmodule\s+{re.escape(name)}\b",
+            f"module '{name}' is used nowhere, so there are two behaviours: it and '{wanted}'",
+            "keep one top module: take this one out, or use it in the other",
         )
-        for name in run.unused_modules
+        for name in tops
+        if name != wanted
     ]
 
 
@@ -54,76 +91,40 @@ def _ports(device: Device, module: dict[str, Any]) -> list[Diagnostic]:
     for name, (role, direction, port) in wanted.items():
         where = port.where
         if name not in ports:
-            hint = f"add '{direction}' {name} to the module's ports, or remove the {role}"
-            found.append(
-                diagnostic(device, where.line, where.column, f"{role} '{name}' is not a port of the module", hint)
-            )
+            declaration = f"{direction} {_range(len(port.places))}{name}"
+            hint = f"add '{declaration}' to the top module's ports, or take out the {role}"
+            message = f"the {role} '{name}' is not a port of the top module"
+            found.append(diagnostic(device, where.line, where.column, message, hint))
             continue
         line, column = _declared(module, name) or (where.line, where.column)
+        bits = len(ports[name]["bits"])
         if ports[name]["direction"] != direction:
-            message = f"{role} '{name}' is an {ports[name]['direction']} of the module"
-            found.append(diagnostic(device, line, column, message, f"make it an {direction}"))
-        elif len(ports[name]["bits"]) != len(port.places):
-            message = f"'{name}' has {len(ports[name]['bits'])} bit(s) in the module but {len(port.places)} place(s)"
-            found.append(diagnostic(device, line, column, message, "give one place for every bit"))
+            message = f"the {role} '{name}' is an {ports[name]['direction']} of the top module"
+            other = "an actuator" if role == "sensor" else "a sensor"
+            hint = f"make the port an {direction}, or declare '{name}' as {other}"
+            found.append(diagnostic(device, line, column, message, hint))
+        elif bits != len(port.places):
+            places = "1 place" if len(port.places) == 1 else f"{len(port.places)} places"
+            message = f"'{name}' has {bits} bit{'s'[: bits != 1]} in the module, but the {role} has {places}"
+            hint = f"write '{direction} {_range(len(port.places))}{name}', or give the {role} one place for every bit"
+            found.append(diagnostic(device, line, column, message, hint))
     for name in ports:
         if name in wanted:
             continue
         line, column = _declared(module, name) or (device.where.line, device.where.column)
         if name != CLOCK:
-            hint = f"declare a sensor or actuator '{name}', or remove the port"
-            found.append(diagnostic(device, line, column, f"port '{name}' has no sensor or actuator", hint))
+            kind = "a sensor" if ports[name]["direction"] == "input" else "an actuator"
+            message = f"the port '{name}' has no sensor or actuator"
+            hint = f"declare {kind} '{name}', or take out the port; the clock is called '{CLOCK}'"
+            found.append(diagnostic(device, line, column, message, hint))
         elif ports[name]["direction"] != "input" or len(ports[name]["bits"]) != 1:
-            found.append(
-                diagnostic(
-                    device, line, column, f"'{CLOCK}' must be an input of one bit", f"write 'input wire {CLOCK}'"
-                )
-            )
+            message = f"'{CLOCK}' must be an input of one bit"
+            found.append(diagnostic(device, line, column, message, f"write 'input {CLOCK}'"))
     return found
 
 
-def _storage(device: Device, module: dict[str, Any]) -> list[Diagnostic]:
-    clock = module["ports"].get(CLOCK, {}).get("bits", [None])[0]
-    found = []
-    for _, cell in sorted(module["cells"].items()):
-        trouble = _cell_trouble(cell, clock)
-        if trouble:
-            line, column = source_position(cell["attributes"].get("src", "")) or (
-                device.where.line,
-                device.where.column,
-            )
-            found.append(diagnostic(device, line, column, *trouble))
-    return sorted(set(found))
-
-
-def _cell_trouble(cell: dict[str, Any], clock: int | None) -> tuple[str, str] | None:
-    kind = cell["type"]
-    if kind in _LATCHES:
-        return (
-            "this infers a latch: in some case an output of the block is not assigned",
-            "assign it in every case, or give it a default at the top of the block",
-        )
-    if kind in _ASYNCHRONOUS:
-        return (
-            "a register is set or reset asynchronously, which a device cannot do",
-            f"react to '{CLOCK}' alone: always @(posedge {CLOCK}), with the reset tested inside",
-        )
-    if kind in _SYNCHRONOUS and cell["connections"]["CLK"] != [clock]:
-        return (
-            f"a register is clocked by something other than '{CLOCK}'",
-            f"the device has one clock: use always @(posedge {CLOCK}) and an enable",
-        )
-    if kind in _SYNCHRONOUS and int(cell["parameters"]["CLK_POLARITY"], 2) != 1:
-        return ("a register is clocked by the falling edge", f"a tick has one edge: use always @(posedge {CLOCK})")
-    if kind == "$mem_v2" and _clocked_otherwise(cell, clock):
-        return (f"a memory is clocked by something other than '{CLOCK}'", f"use always @(posedge {CLOCK})")
-    return None
-
-
-def _clocked_otherwise(cell: dict[str, Any], clock: int | None) -> bool:
-    # a read port without a clock is combinational and has a constant or unknown on its clock pin
-    pins = cell["connections"]["RD_CLK"] + cell["connections"]["WR_CLK"]
-    return any(isinstance(bit, int) and bit != clock for bit in pins)
+def _range(width: int) -> str:
+    return f"[{width - 1}:0] " if width > 1 else ""
 
 
 def _declared(module: dict[str, Any], name: str) -> tuple[int, int] | None:

@@ -1,10 +1,11 @@
-"""Starts the Yosys worker and turns what Yosys says into diagnostics at the program's own lines and columns."""
+"""Starts the Yosys worker and collects what it makes and says."""
 
 from __future__ import annotations
 
 import json
 import os
 import re
+import signal
 import subprocess
 import sys
 import tempfile
@@ -14,21 +15,18 @@ from typing import Any
 
 from mdlcad.errors import Diagnostic, InputError
 from mdlcad.language.device import Device
+from mdlcad.synthesis.slang import SYNTAX_CODES, Finding, read_findings
+from mdlcad.synthesis.spots import diagnostic, locate
 
-TIMEOUT_SECONDS = 300.0
+# by the clock on the wall, for a machine that is busy; the worker limits its own processor time
+TIMEOUT_SECONDS = 600.0
 
 _FORBIDDEN = re.compile(
     r"`\s*include\b|\$(?:readmem[bh]|writemem[bh]|fopen|fclose|fdisplay[bho]?|fwrite[bho]?|fstrobe|fmonitor|fscanf|"
-    r"fgets|fgetc|fread|fflush|dumpfile|dumpvars|system|value\$plusargs|test\$plusargs)(?![\w$])|\bimport\b|\bbind\b"
+    r"fgets|fgetc|fread|fflush|dumpfile|dumpvars|system|value\$plusargs|test\$plusargs)(?![\w$])|\bimport\s*\"|\bbind\b"
 )
-_LOCATED = re.compile(r"^program\.v:(\d+)(?:\.(\d+))?(?:-[\d.]+)?: (ERROR|Warning): (.*)$", re.M)
-_ERROR = re.compile(r"^ERROR: (.*)$", re.M)
-_UNUSED = re.compile(r"^Removing unused module `\\(.*)'\.$", re.M)
-_CHECK = re.compile(
-    r"^Warning: (Wire .* is used but has no driver|multiple conflicting drivers for .*|.*found logic loop.*)", re.M
-)
-# Warnings that Yosys survives but that never mean what the author wanted.
-_FATAL_WARNINGS = ("is implicitly declared", "out of bounds", "Range select")
+_TOPS = re.compile(r"^Top level design units:\n((?:    .*\n)*)", re.M)
+_LATEST, _VERILOG_2005 = "latest", "1364-2005"
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,32 +34,65 @@ class YosysRun:
     """One run, as far as it came.
 
     Attributes:
-        raw, reference, netlist: the JSON designs (see ``worker``); the last two are empty if there was trouble.
-        unused_modules: modules that were left out as unused.
-        trouble: what Yosys had to say against the program.
+        raw, reference, netlist: the JSON designs (see ``worker``).
+        tops: the modules that no other module uses.
+        log: what Yosys said about the elaborated design.
+        findings: what slang had to say against the program without giving up.
     """
 
     raw: dict[str, Any]
     reference: dict[str, Any]
     netlist: dict[str, Any]
-    unused_modules: tuple[str, ...]
-    trouble: tuple[Diagnostic, ...]
+    tops: tuple[str, ...]
+    log: str
+    findings: tuple[Finding, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class _Outcome:
+    """A finished worker: exit code (negative: the signal that ended it), log, slang's findings, the designs."""
+
+    code: int
+    log: str
+    findings: tuple[Finding, ...]
+    designs: dict[str, dict[str, Any]]
 
 
 def run_yosys(device: Device) -> YosysRun:
     """Elaborate ``device.verilog``.
 
-    The text is the user's: it cannot include or open files, and Yosys works in an empty temporary folder.
+    The text is the user's: it cannot include or open files, and Yosys works in an empty temporary folder with limits on
+    processor time and memory. Words that only SystemVerilog reserves may be names: a program that is wrong as
+    SystemVerilog but right as Verilog-2005 is taken as the latter.
 
     Raises:
         InputError: the Verilog is so wrong that there is no design to check, at its line and column in the file.
     """
     _refuse_files(device)
+    outcome = _run(device, _LATEST)
+    if any(finding.fatal and finding.code in SYNTAX_CODES for finding in outcome.findings):
+        older = _run(device, _VERILOG_2005)
+        if "raw" in older.designs:
+            outcome = older
+    if "raw" not in outcome.designs:
+        raise InputError(_why(device, outcome))
+    tops = _TOPS.search(outcome.log)
+    return YosysRun(
+        outcome.designs["raw"],
+        outcome.designs.get("reference", {}),
+        outcome.designs.get("netlist", {}),
+        tuple(tops[1].split()) if tops else (),
+        outcome.log,
+        outcome.findings,
+    )
+
+
+def _run(device: Device, edition: str) -> _Outcome:
     worker = Path(__file__).with_name("worker.py")
     with tempfile.TemporaryDirectory(prefix="mdlcad-") as folder:
         try:
             done = subprocess.run(
-                [sys.executable, "-P", str(worker)],
+                [sys.executable, "-P", str(worker), edition],
                 # one byte a character, so that the columns of Yosys are ours
                 input=device.verilog.encode("ascii", "replace").decode("ascii"),
                 capture_output=True,
@@ -74,59 +105,47 @@ def run_yosys(device: Device) -> YosysRun:
                 check=False,
             )
         except subprocess.TimeoutExpired:
-            raise InputError(
-                [
-                    locate(
-                        device,
-                        r"\bmodule\b",
-                        "the behaviour takes too long to elaborate",
-                        "make loops and vectors smaller",
-                    )
-                ]
-            ) from None
-        found = _diagnostics(device, done.stdout + "\n" + done.stderr, done.returncode)
+            return _Outcome(-signal.SIGXCPU, "", (), {})
         path = Path(folder)
-        raw = path / "raw.json"
-        if not raw.exists():
-            raise InputError(found)
-        names = () if found else ("reference", "netlist")
-        designs = {name: json.loads((path / f"{name}.json").read_bytes()) for name in names}
-        return YosysRun(
-            json.loads(raw.read_bytes()),
-            designs.get("reference", {}),
-            designs.get("netlist", {}),
-            tuple(sorted(_UNUSED.findall(done.stdout))),
-            tuple(found),
+        designs = {
+            name: json.loads((path / f"{name}.json").read_bytes())
+            for name in ("raw", "reference", "netlist")
+            if (path / f"{name}.json").exists()
+        }
+        return _Outcome(
+            done.returncode, done.stdout + "\n" + done.stderr, read_findings(path / "findings.json"), designs
         )
 
 
-def locate(device: Device, pattern: str, message: str, hint: str = "") -> Diagnostic:
-    """A diagnostic at the first match of ``pattern`` in the Verilog, or at its first line of text."""
-    match = re.search(pattern, device.verilog) or re.search(r"\S", device.verilog)
-    at = match.start() if match else 0
-    line = device.verilog.count("\n", 0, at) + 1
-    column = at - (device.verilog.rfind("\n", 0, at) + 1) + 1
-    return diagnostic(device, line, column, message, hint)
-
-
-def diagnostic(device: Device, line: int, column: int | None, message: str, hint: str = "") -> Diagnostic:
-    """A diagnostic at a line of the program; without a column, at the line's first word."""
-    lines = device.verilog.splitlines()
-    excerpt = lines[line - 1] if 0 < line <= len(lines) else ""
-    if column is None:
-        column = len(excerpt) - len(excerpt.lstrip()) + 1
-    return Diagnostic(device.file, line, column, message, hint, excerpt.rstrip())
-
-
-def source_position(src: str) -> tuple[int, int] | None:
-    """Line and column of the first place in a ``src`` attribute of Yosys."""
-    match = re.match(r"program\.v:(\d+)\.(\d+)", src)
-    return (int(match[1]), int(match[2])) if match else None
+def _why(device: Device, outcome: _Outcome) -> list[Diagnostic]:
+    """Why there is no design."""
+    found = [
+        diagnostic(device, finding.line, finding.column, finding.message, finding.hint) for finding in outcome.findings
+    ]
+    if found:
+        return sorted(set(found))
+    if outcome.code == -signal.SIGXCPU or "bad_alloc" in outcome.log or outcome.code == -signal.SIGKILL:
+        wrong, hint = "the behaviour takes too long, or too much memory, to elaborate", "make loops and vectors smaller"
+        culprit = r"\b(?:for|while)\b" if re.search(r"\b(?:for|while)\b", device.verilog) else r"\bmodule\b"
+        return [locate(device, culprit, wrong, hint)]
+    if outcome.code == -signal.SIGSEGV:
+        wrong = "the behaviour calls itself without end"
+        hint = "a function, task or module must not use itself; use a loop with a constant count"
+        culprit = r"\b(?:function|task)\b" if re.search(r"\b(?:function|task)\b", device.verilog) else r"\bmodule\b"
+        return [locate(device, culprit, wrong, hint)]
+    texts = re.findall(r"^ERROR: (.*)$", outcome.log, re.M)
+    words = texts[0].replace("`\\", "'").replace("`", "'").rstrip(".!") if texts else ""
+    if not words or "/" in words:
+        # an assertion of Yosys itself, which would tell the user about Yosys' source
+        words = "the behaviour uses something that cannot be turned into gates"
+    name = re.search(r"'\\?([A-Za-z_]\w*)'", words)
+    pattern = rf"\b{re.escape(name[1])}\b" if name else r"\bmodule\b"
+    return [locate(device, pattern, words, "write it with registers, wires, if, case and for")]
 
 
 def _refuse_files(device: Device) -> None:
     text = re.sub(
-        r"//[^\n]*|/\*.*?\*/|\"(?:\\.|[^\"\\\n])*\"", lambda m: re.sub(r"[^\n]", " ", m[0]), device.verilog, flags=re.S
+        r"//[^\n]*|/\*.*?\*/|\"(?:\\.|[^\"\\\n])*\"", lambda m: re.sub(r'[^\n"]', " ", m[0]), device.verilog, flags=re.S
     )
     found = []
     for match in _FORBIDDEN.finditer(text):
@@ -143,49 +162,3 @@ def _refuse_files(device: Device) -> None:
         )
     if found:
         raise InputError(found)
-
-
-def _diagnostics(device: Device, log: str, code: int) -> list[Diagnostic]:
-    found = []
-    for line, column, severity, text in _LOCATED.findall(log):
-        if severity == "ERROR" or any(word in text for word in _FATAL_WARNINGS):
-            hint = "declare it" if "implicitly declared" in text else ""
-            found.append(diagnostic(device, int(line), int(column) if column else None, _plain(text), hint))
-    for text in _CHECK.findall(log):
-        found.append(_from_check(device, text))
-    if code and not found:
-        texts = [text for text in _ERROR.findall(log) if not text.startswith("Assert")]
-        texts = texts or ["the behaviour uses something that cannot be turned into gates"]
-        names = re.search(r"cell `\\?([^']*)'", texts[0]) or re.search(r"`\\?([^']*)'", texts[0])
-        pattern = rf"\b{re.escape(names[1])}\b" if names else r"\bmodule\b"
-        found.append(locate(device, pattern, _plain(texts[0])))
-    return sorted(set(found))
-
-
-def _from_check(device: Device, text: str) -> Diagnostic:
-    name = re.search(r"\\?([A-Za-z_]\w*)(?: \[\d+\])? is used", text)
-    if name:
-        return locate(
-            device,
-            rf"\b{name[1]}\b",
-            f"'{name[1]}' is read but never given a value",
-            "assign it, or remove what reads it",
-        )
-    name = re.search(r"drivers for (?:.*?\.)?\\?([A-Za-z_]\w*)", text)
-    if name:
-        return locate(
-            device,
-            rf"\b{name[1]}\b",
-            f"'{name[1]}' is driven from several places",
-            "assign it in one always block or one assign",
-        )
-    return locate(
-        device,
-        r"\balways\b|\bassign\b",
-        "the logic feeds back on itself without a register",
-        "break the loop with a register clocked by clk",
-    )
-
-
-def _plain(text: str) -> str:
-    return text.replace("`\\", "'").replace("`", "'").rstrip(".")

@@ -130,27 +130,150 @@ def test_the_same_bytes_under_any_hash_seed() -> None:
     assert len(outputs) == 1
 
 
-@pytest.mark.parametrize(
-    ("body", "expected"),
-    [
-        ("always @(posedge clk) q <= a +;", "d.mdl:2:1: error: syntax error"),
-        ("always @(posedge clk) q <= a & ghost;", "d.mdl:2:1: error: Identifier 'ghost' is implicitly declared"),
-        ("wire w; always @(posedge clk) q <= a & w;", "'w' is read but never given a value"),
-        ("always @(posedge clk or posedge b) if (b) q <= 0; else q <= a;", "reset asynchronously"),
-        ("always @(posedge b) q <= a;", "clocked by something other than 'clk'"),
-        ("always @(negedge clk) q <= a;", "clocked by the falling edge"),
-        ("always @* if (a) q = b;", "infers a latch"),
-        ("wire u, v; assign u = v & a; assign v = u | b; always @(posedge clk) q <= u;", "feeds back on itself"),
-        ("wire w; assign w = a; assign w = b; always @(posedge clk) q <= w;", "driven from several places"),
-        ("other o(.x(a)); always @(posedge clk) q <= a;", "other"),
-        ('initial $readmemh("secret", q); always @(posedge clk) q <= a;', "'$readmemh' is not allowed"),
-    ],
-)
-def test_what_a_device_cannot_do_is_refused_at_its_line(body: str, expected: str) -> None:
+# body of the module, from line 2 on: every finding, with its line and column
+REFUSED: dict[str, tuple[str, list[str]]] = {
+    "operand": ("always @(posedge clk) q <= a +;", ["2:31: error: expected expression; an operand or a value"]),
+    "semicolon": ("always @(posedge clk) q <= a\nwire z = a;", ["2:29: error: expected ';'; write ';' here"]),
+    "undeclared": ("always @(posedge clk) q <= a & ghost;", ["2:32: error: use of undeclared identifier 'ghost'"]),
+    "undeclared target": ("assign r = a; always @(posedge clk) q <= a;", ["2:8: error: 'r' is used but not declared"]),
+    "two in one run": (
+        "always @(posedge clk) q <= a & ghost;\nassign b = ;\nfoo f(a);",
+        ["2:32: error: use of undeclared", "3:12: error: expected expression", "4:1: error: unknown module 'foo'"],
+    ),
+    "undriven wire": ("wire w; always @(posedge clk) q <= a & w;", ["2:6: error: 'w' (or a bit of it) is read but"]),
+    "undriven reg": ("reg w; always @(posedge clk) q <= a & w;", ["2:5: error: 'w' (or a bit of it) is read but"]),
+    "undriven bit": ("wire [1:0] w; assign w[0] = a; always @(posedge clk) q <= ^w;", ["2:12: error: 'w' (or a bit"]),
+    "asynchronous reset": (
+        "always @(posedge clk or posedge b) if (b) q <= 0; else q <= a;",
+        ["2:1: error: the register 'q' is set or reset asynchronously, which a device cannot do; react to 'clk' alone"],
+    ),
+    "asynchronous reset, low": (
+        "always @(posedge clk or negedge b) if (!b) q <= 1; else q <= a;",
+        ["2:1: error: the register 'q' is set or reset asynchronously"],
+    ),
+    "second clock": ("always @(posedge b) q <= a;", ["2:1: error: the register 'q' is clocked by 'b', not by 'clk'"]),
+    "gated clock": (
+        "wire g = clk & b; always @(posedge g) q <= a;",
+        ["2:10: error: 'clk' is used as a value", "2:19: error: the register 'q' is clocked by 'g', not by 'clk'"],
+    ),
+    "clock as a value": ("always @(posedge clk) q <= clk;", ["2:1: error: 'clk' is used as a value"]),
+    "falling edge": ("always @(negedge clk) q <= a;", ["2:1: error: the register 'q' is clocked by the falling edge"]),
+    "latch": ("always @* if (a) q = b;", ["2:1: error: this makes a latch of 'q': in some case it is not assigned"]),
+    "latch, case": (
+        "always_comb case ({a, b}) 0: q = 1; 1: q = 0; endcase",
+        ["1:50: error: this makes a latch of 'q': in some case it is not assigned; assign it in every case, or give"],
+    ),
+    "loop of logic": (
+        "wire u, v; assign u = v & a; assign v = u | b; always @(posedge clk) q <= u;",
+        ["2:6: error: the logic feeds back on itself without a register, through 'u' and 'v'; break the loop"],
+    ),
+    "two drivers": (
+        "wire w; assign w = a; assign w = b; always @(posedge clk) q <= w;",
+        ["2:6: error: 'w' is driven from several places; assign it in one"],
+    ),
+    "two blocks": (
+        "always @(posedge clk) q <= a;\nalways @(posedge clk) q <= b;",
+        ["3:1: error: 'q' is driven from several places (lines 2 and 3); assign it in one"],
+    ),
+    "block and assign": ("always @(posedge clk) q <= a;\nassign q = b;", ["1:50: error: 'q' is driven from several"]),
+    "assigned input": ("assign a = b; always @(posedge clk) q <= a;", ["1:27: error: 'a' is driven from several"]),
+    "wire in a block": (
+        "wire w; always @* w = a; always @(posedge clk) q <= w;",
+        ["2:19: error: cannot assign to a net"],
+    ),
+    "unknown module": ("other o(.x(a)); always @(posedge clk) q <= a;", ["2:1: error: unknown module 'other'; write"]),
+    "unknown function": ("always @(posedge clk) q <= f(a);", ["2:28: error: use of undeclared identifier 'f'"]),
+    "unknown macro": ("always @(posedge clk) q <= `F;", ["2:28: error: unknown macro or compiler directive '`F'"]),
+    "index": ("wire [1:0] w = {a, b}; always @(posedge clk) q <= w[2];", ["2:53: error: cannot refer to element 2"]),
+    "reversed range": (
+        "wire [1:0] w = {a, b}; always @(posedge clk) q <= ^w[0:1];",
+        ["2:54: error: range of selection"],
+    ),
+    "declared twice": ("wire w;\nwire w; always @(posedge clk) q <= a;", ["3:6: error: redefinition of 'w' (previous"]),
+    "division by zero": ("always @(posedge clk) q <= a / 0;", ["2:32: error: division by constant zero; divide by"]),
+    "initial input": ("initial q = a;", ["2:13: error: an initial value that is not a constant; a register starts"]),
+    "initial wait": ("initial begin @(posedge clk); q = 1; end", ["2:17: error: a delay or a wait for an event"]),
+    "delay": (
+        "always @(posedge clk) q <= #5 a;",
+        ["2:28: error: a delay or a wait for an event, which a device cannot"],
+    ),
+    "own clock": (
+        "always #5 q = ~q;",
+        ["2:8: error: a delay or a wait for an event, which a device cannot do; take it"],
+    ),
+    "tri-state": (
+        "wire w = a ? b : 1'bz; always @(posedge clk) q <= w;",
+        ["2:18: error: the value z, which a device cannot do: a rod"],
+    ),
+    "z": ("wire w = 1'bz; always @(posedge clk) q <= w;", ["2:10: error: the value z, which a device cannot do"]),
+    "endless loop": (
+        "integer i; always @(posedge clk) for (i = 0; i < 4; i = i) q <= ~q;",
+        ["2:34: error: this loop never ends, or has more than 4000 rounds; give it a constant limit"],
+    ),
+    "long loop": (
+        "integer i; always @(posedge clk) for (i = 0; i < 100000000; i = i + 1) q <= ~q;",
+        ["2:34: error: this loop never ends, or has more than 4000 rounds"],
+    ),
+    "large vector": ("reg [100000000:0] v; always @(posedge clk) q <= v[a];", ["2:6: error: packed type of 100000001"]),
+    "recursion": (
+        "function f(input x); f = f(x); endfunction always @(posedge clk) q <= f(a);",
+        ["2:1: error: the behaviour calls itself without end; a function, task or module must not use itself"],
+    ),
+    "two kinds of assignment": (
+        "always @(posedge clk) begin q = a; q <= b; end",
+        ["2:36: error: one block assigns a variable both by '=' and by '<='; use '<=' for registers"],
+    ),
+    "power": ("always @(posedge clk) q <= a ** b;", ["2:28: error: '**' with a variable exponent"]),
+    "file": (
+        'initial $readmemh("secret", q); always @(posedge clk) q <= a;',
+        ["2:9: error: '$readmemh' is not allowed"],
+    ),
+}
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_what_a_device_cannot_do_is_refused_at_its_place(case: str) -> None:
+    body, expected = REFUSED[case]
     text = f"module m(input clk, input a, input b, output reg q);\n{body}\nendmodule\n"
     found = refusal(text, {"a": 1, "b": 1}, {"q": 1})
-    assert any(expected in item for item in found), found
-    assert all(item.startswith("d.mdl:") and "/tmp" not in item and "program.v" not in item for item in found)
+    assert len(found) == len(expected), found
+    for item, words in zip(found, expected, strict=True):
+        assert item.startswith(f"d.mdl:{words}")
+        message, source, caret = item.split("\n")
+        assert "; " in message, "every finding says what to do"
+        assert source.strip() in text.split("\n")
+        assert len(caret) == 2 + int(words.split(":")[1])
+        assert not any(word in item for word in ("/tmp", "program.v", "yosys", "Yosys", "slang", "$proc", "$driver"))
+
+
+SUB = "module sub #(parameter N = 1)(input [3:0] x, output [3:0] y); assign y = ~x + N; endmodule\n"
+
+
+@pytest.mark.parametrize(
+    ("use", "expected"),
+    [
+        ("sub s(.xx(a), .y(q));", ["3:5: error: input port 'x' has no", "3:8: error: port 'xx' does not exist in"]),
+        ("sub s(a, q, a);", ["3:13: error: too many port connections given to instantiation of 'sub'"]),
+        ("sub s(a[1:0], q);", ["3:7: error: the two sides of this port connection differ: 2 and 4 bits"]),
+        ("wire [5:0] w; sub s(a, w); assign q = w[3:0];", ["3:24: error: the two sides of this port connection"]),
+        ("sub s(.x(), .y(q));", ["3:8: error: input port 'x' is explicitly connected to nothing; connect it"]),
+        ("sub #(.M(2)) s(a, q);", ["3:8: error: parameter 'M' does not exist in 'sub'"]),
+        ("sub s(a, q); sub s(a, q);", ["3:18: error: redefinition of 's' (previous definition here, line 3)"]),
+    ],
+)
+def test_instances_must_fit_their_modules(use: str, expected: list[str]) -> None:
+    found = refusal(SUB + f"module m(input [3:0] a, output [3:0] q);\n{use}\nendmodule", {"a": 4}, {"q": 4})
+    assert [item.startswith(f"d.mdl:{words}") for item, words in zip(found, expected, strict=True)] == [True] * len(
+        expected
+    ), found
+
+
+def test_names_that_only_later_editions_of_verilog_reserve() -> None:
+    text = (
+        "module m(input clk, input do, input bit, output reg final); always @(posedge clk) final <= do & bit; endmodule"
+    )
+    netlist = synthesise(device_of(text, {"do": 1, "bit": 1}, {"final": 1}))
+    assert [register.bit for register in netlist.registers] == ["final[0]"]
 
 
 def test_an_include_is_refused_even_if_the_file_exists() -> None:
@@ -166,10 +289,10 @@ def test_words_in_comments_and_strings_are_not_refused() -> None:
 @pytest.mark.parametrize(
     ("sensors", "actuators", "expected"),
     [
-        ({"a": 1}, {"q": 1}, "port 'b' has no sensor or actuator"),
-        ({"a": 1, "b": 1, "c": 1}, {"q": 1}, "sensor 'c' is not a port of the module"),
-        ({"a": 2, "b": 1}, {"q": 1}, "'a' has 1 bit(s) in the module but 2 place(s)"),
-        ({"a": 1, "b": 1, "q": 1}, {}, "sensor 'q' is an output of the module"),
+        ({"a": 1}, {"q": 1}, "the port 'b' has no sensor or actuator"),
+        ({"a": 1, "b": 1, "c": 1}, {"q": 1}, "the sensor 'c' is not a port of the top module; add 'input c'"),
+        ({"a": 2, "b": 1}, {"q": 1}, "'a' has 1 bit in the module, but the sensor has 2 places; write 'input [1:0] a'"),
+        ({"a": 1, "b": 1, "q": 1}, {}, "the sensor 'q' is an output of the top module; make the port an input"),
     ],
 )
 def test_ports_must_be_the_sensors_and_actuators(
