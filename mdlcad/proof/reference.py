@@ -6,7 +6,7 @@ from plain gates made directly from the RTL's operators, before any logic optimi
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from graphlib import TopologicalSorter
 
 import numpy as np
@@ -100,9 +100,14 @@ def build_reference(device: Device) -> Reference:
     """
     run = run_yosys(device)
     check_design(device, run)
-    used = {register.bit for register in build_netlist(device, parse_gates(run.netlist)).registers}
-    design = parse_gates(run.reference)
-    registers = tuple(cell for cell in design.registers if cell.name in used)
+    mapped, design = parse_gates(run.netlist), parse_gates(run.reference)
+    used = {register.bit for register in build_netlist(device, mapped).registers}
+    # where optimising the logic made an output of a register's plain copy, the netlist calls the register by the output
+    stored = sorted(
+        (replace(cell, name=mapped.aliases.get(cell.name, cell.name)) for cell in design.registers),
+        key=lambda cell: cell.name,
+    )
+    registers = tuple(cell for cell in stored if cell.name in used)
     missing = sorted(used - {cell.name for cell in registers})
     if missing:
         raise ValueError(f"the reference lacks the registers {', '.join(missing)}")
@@ -114,7 +119,7 @@ def build_reference(device: Device) -> Reference:
         _input_bits=tuple(bit for s in device.sensors for bit in design.ports[s.name]),
         _output_bits=tuple(bit for a in device.actuators for bit in design.ports[a.name]),
         _registers=registers,
-        _unused=tuple(cell for cell in design.registers if cell.name not in used),
+        _unused=tuple(cell for cell in stored if cell.name not in used),
         _logic=_levelised(design),
     )
 

@@ -49,12 +49,14 @@ class GateDesign:
         ports: bits of every port, least significant first.
         names: the program's name of every bit that has one, "NAME[i]"; for a bit of several names, a port's first,
             then the shallowest, then the alphabetically first.
+        aliases: for every name of a register's bit, the one that the register goes by.
     """
 
     ports: dict[str, tuple[Bit, ...]]
     names: dict[Bit, str]
     logic: tuple[LogicCell, ...]
     registers: tuple[RegisterCell, ...]
+    aliases: dict[str, str]
 
 
 def top_module(design: dict[str, Any]) -> dict[str, Any]:
@@ -87,7 +89,15 @@ def parse_gates(design: dict[str, Any]) -> GateDesign:
             registers.append(RegisterCell(name, pins["D"], pins.get("E"), output, initial.get(output, False)))
         elif cell["type"] != "$scopeinfo":
             raise ValueError(f"cell {cell_name} of type {cell['type']} is not a plain gate")
-    return GateDesign(ports, names, tuple(logic), tuple(sorted(registers, key=lambda r: r.name)))
+    chosen = {register.output: register.name for register in registers}
+    aliases = {
+        f"{name}[{index}]": chosen[bit]
+        for name, net in module["netnames"].items()
+        if not net["hide_name"]
+        for index, bit in enumerate(net["bits"])
+        if bit in chosen
+    }
+    return GateDesign(ports, names, tuple(logic), tuple(sorted(registers, key=lambda r: r.name)), aliases)
 
 
 def _bit(raw: Bit) -> Bit:

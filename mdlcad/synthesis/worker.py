@@ -18,6 +18,7 @@ import sys
 from pathlib import Path
 
 PROGRAM = "program.v"
+DIVISION = "narrow.v"
 # A program that never ends, or wants a continent of memory, must not take the machine with it. Elaborating 10,000
 # registers takes about a second.
 ELABORATION_CPU_SECONDS = 20
@@ -26,7 +27,8 @@ MEMORY_BYTES = 6 << 30
 
 READ = (
     "read_slang -j 1 --std {edition} --diag-json findings.json --error-limit 100 --unroll-limit 4000 "
-    "--max-constexpr-steps 1000000 -Wport-width-expand -Wport-width-trunc -Wimplicit-net -Wunconnected-input-port "
+    "--max-constexpr-steps 1000000 --allow-use-before-declare --allow-merging-ansi-ports --relax-enum-conversions "
+    "-Wport-width-expand -Wport-width-trunc -Wimplicit-net -Wunconnected-input-port "
     "-Wempty-input-connection -Wstatic-init-value -Wdivide-by-zero " + PROGRAM
 )
 ELABORATE = (
@@ -45,6 +47,7 @@ REGISTERS = (
     "memory -nordff",
     "setundef -zero -undriven -init",
     "opt_expr",
+    f"techmap -map {DIVISION}",
     "opt_clean",
     "opt -nosdff",
     "setundef -zero -undriven -init",
@@ -80,6 +83,8 @@ def main(edition: str) -> int:
     from pyosys import libyosys
 
     Path(PROGRAM).write_text(sys.stdin.read(), encoding="utf-8")
+    # beside the program, for Yosys takes no paths with spaces
+    Path(DIVISION).write_bytes(Path(__file__).with_name(DIVISION).read_bytes())
     design = libyosys.Design()
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY_BYTES, MEMORY_BYTES))
     resource.setrlimit(resource.RLIMIT_CPU, (ELABORATION_CPU_SECONDS, CPU_SECONDS))
