@@ -29,8 +29,11 @@ module narrow_division (A, B, Y);
 
   wire [BITS_A-1:0] a = A[BITS_A-1:0];
   wire [BITS_B-1:0] b = B[BITS_B-1:0];
+  // neither is ever larger than the dividend
+  wire [BITS_A-1:0] y;
   generate
-    if (_TECHMAP_CELLTYPE_ == "$div") assign Y = a / b;
-    else assign Y = a % b;
+    if (_TECHMAP_CELLTYPE_ == "$div") assign y = a / b;
+    else assign y = a % b;
   endgenerate
+  assign Y = y;
 endmodule
