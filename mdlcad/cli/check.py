@@ -16,10 +16,14 @@ def register(commands: Commands[argparse.ArgumentParser]) -> None:
 
 
 def _run(options: argparse.Namespace) -> int:
-    from mdlcad.language import read_device
+    from mdlcad.errors import InputError
+    from mdlcad.language import anchored, read_device
     from mdlcad.synthesis import synthesise
 
     device = read_device(options.file)
-    synthesise(device)
+    try:
+        synthesise(device)
+    except InputError as problem:
+        raise anchored(problem, options.file) from None
     say(f"{options.file}: {device.name}: no errors")
     return HOLDS

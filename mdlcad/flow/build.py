@@ -10,13 +10,13 @@ from pathlib import Path
 
 from mdlcad import __version__
 from mdlcad.artefact import checksum, load, to_json, write_atomic
-from mdlcad.errors import SignoffError, UsageError
+from mdlcad.errors import InputError, SignoffError, UsageError
 from mdlcad.flow.folder import REPORT, new_folder
 from mdlcad.flow.plans import steps_with
 from mdlcad.flow.result import failures, make_report
 from mdlcad.flow.state import Job, State
 from mdlcad.flow.steps import STEPS, Step
-from mdlcad.language import Device
+from mdlcad.language import Device, anchored
 from mdlcad.mapping import CELLS_FILE, Library, MappingRequest, load_library, recorded_library
 from mdlcad.mechanics import Sizing, load_process
 from mdlcad.network.model import Network
@@ -153,6 +153,8 @@ def _run(step: Step, job: Job, state: State, say: Callable[[str], None]) -> tupl
     before = set(state.files)
     try:
         state = step.run(job, state, progress)
+    except InputError as problem:
+        raise (problem if job.source is None else anchored(problem, job.source)) from None
     except SignoffError as problem:
         raise SignoffError(f"{step.name}: {problem}") from problem
     finally:

@@ -12,9 +12,9 @@ from dataclasses import dataclass, replace
 from shapely import Polygon
 
 from mdlcad.artefact import to_json, write_atomic
-from mdlcad.errors import SignoffError, UsageError
+from mdlcad.errors import Diagnostic, InputError, SignoffError, UsageError
 from mdlcad.flow.state import Job, State, need
-from mdlcad.language import Actuator, Device, Sensor, read_device
+from mdlcad.language import Actuator, Device, Sensor, Where, read_device
 from mdlcad.mapping import map_netlist
 from mdlcad.mechanics import size
 from mdlcad.mechanics.drive import drive_loads
@@ -25,7 +25,7 @@ from mdlcad.parts.store import Parts, records_of
 from mdlcad.placement.ports import PortPlace
 from mdlcad.proof.prove import prove
 from mdlcad.proof.reference import build_reference
-from mdlcad.routing import place_and_route
+from mdlcad.routing import find_lack, place_and_route
 from mdlcad.routing.drawing import draw_layout
 from mdlcad.signoff.extraction import extract
 from mdlcad.signoff.geometry import check_geometry
@@ -94,12 +94,17 @@ def _size(job: Job, state: State, progress: Progress) -> State:
 
 
 def _place_and_route(job: Job, state: State, progress: Progress) -> State:
-    device = need(state.device)
+    device, network, rules = need(state.device), need(state.network), need(state.sizing).rules
+    boundary, ports = tuple(line.start for line in device.boundary), port_places(device)
+    lack = find_lack(network, boundary, ports, rules)
+    if lack is not None:
+        where = place_of(device, lack.bit) if lack.bit else device.boundary[0].where
+        raise InputError([Diagnostic(device.file, where.line, where.column, lack.what, lack.mend)])
     placement, layout = place_and_route(
-        need(state.network),
-        tuple(line.start for line in device.boundary),
-        port_places(device),
-        need(state.sizing).rules,
+        network,
+        boundary,
+        ports,
+        rules,
         job.seed,
         progress,
     )
@@ -178,6 +183,13 @@ def draw_placement(job: Job, state: State) -> None:
     from mdlcad.view.placement import write_placement_views  # the plotting library takes a second to load
 
     write_placement_views(need(state.network), job.folder)
+
+
+def place_of(device: Device, bit: str) -> Where:
+    """Where the program gives the place of the port bit "NAME[i]"."""
+    name, _, index = bit.removesuffix("]").rpartition("[")
+    ports: tuple[Sensor | Actuator, ...] = (*device.sensors, *device.actuators)
+    return next(port.places[int(index)].where for port in ports if port.name == name)
 
 
 def port_places(device: Device) -> tuple[PortPlace, ...]:

@@ -16,6 +16,7 @@ from mdlcad.placement.lattice import lattices, place_ports
 from mdlcad.placement.placement import Placement
 from mdlcad.placement.placer import place
 from mdlcad.placement.ports import PortPlace
+from mdlcad.placement.room import Lack, lack_of_room
 from mdlcad.routing.layout import Layout
 from mdlcad.routing.router import route
 
@@ -65,7 +66,7 @@ def place_and_route(
         SignoffError: no scale up to ``STEP ** MOST_STEPS`` times the least one works; says what was in the way.
     """
     search = _Search(network, boundary, ports, rules, seed, progress or (lambda line: None))
-    scale = search.least_scale()
+    scale = least_scale(network, boundary, rules)
     for _ in range(MOST_STEPS):
         found = search.attempt(scale, QUICK)
         if found is not None:
@@ -76,6 +77,20 @@ def place_and_route(
             return found
         scale *= STEP
     raise SignoffError(f"could not place and route {network.design}: {search.reason}")
+
+
+def least_scale(network: Network, boundary: tuple[tuple[int, int], ...], rules: LayoutRules) -> float:
+    """mm per grid unit at which the units' footprints alone would fill the boundary."""
+    need = len(network.masses) * (rules.unit_left + rules.unit_right) * rules.row_pitch
+    return math.sqrt(need / Polygon(boundary).area)
+
+
+def find_lack(
+    network: Network, boundary: tuple[tuple[int, int], ...], ports: tuple[PortPlace, ...], rules: LayoutRules
+) -> Lack | None:
+    """What no scale that ``place_and_route`` would try has room for, or None."""
+    largest = least_scale(network, boundary, rules) * STEP ** (MOST_STEPS - 1)
+    return lack_of_room(network, boundary, ports, rules, math.ceil(SLACK * len(network.masses)), largest)
 
 
 class _Search:
@@ -93,12 +108,6 @@ class _Search:
         self.network, self.boundary, self.ports = network, boundary, ports
         self.rules, self.seed, self.progress = rules, seed, progress
         self.reason = "no lattice with enough slots fits the boundary"
-
-    def least_scale(self) -> float:
-        """mm per grid unit at which the units' footprints alone would fill the boundary."""
-        area = Polygon(self.boundary).area
-        need = len(self.network.masses) * (self.rules.unit_left + self.rules.unit_right) * self.rules.row_pitch
-        return math.sqrt(need / area)
 
     def attempt(self, scale: float, effort: _Effort) -> tuple[Placement, Layout] | None:
         """A placement and its layout at ``scale``, or None."""
