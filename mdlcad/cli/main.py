@@ -8,11 +8,11 @@ import sys
 from collections.abc import Sequence
 
 from mdlcad import __version__
-from mdlcad.cli import build, cells, check, diff, processes, schema, simulate, verify, view
+from mdlcad.cli import build, cells, check, diff, history, processes, schema, simulate, verify, view
 from mdlcad.cli.kinds import FAILS, UNUSABLE
 from mdlcad.errors import InputError, SignoffError, UsageError
 
-COMMANDS = (build, check, verify, view, diff, simulate, cells, processes, schema)
+COMMANDS = (build, check, verify, view, diff, history, simulate, cells, processes, schema)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

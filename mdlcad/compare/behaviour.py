@@ -10,6 +10,7 @@ from mdlcad.compare.fields import field_changes, keyed_changes, largest_first, w
 from mdlcad.compare.folders import NotComparable
 from mdlcad.compare.pair import Findings, Pair
 from mdlcad.errors import UsageError
+from mdlcad.mechanics.drive import DriveLoads
 from mdlcad.proof.outcome import Proof
 from mdlcad.signoff.drc import Finding
 from mdlcad.signoff.lvs import LvsResult
@@ -33,24 +34,31 @@ def behaviour_changes(pair: Pair) -> Findings:
     changes: list[Change] = []
     notes: list[str] = []
     troubles: list[str] = []
+    apart: list[str] = []
     told = _NOT_OF_THE_DEVICE
     if all(build.has(name) for build in (pair.a, pair.b) for name in ("netlist.json", "network.json")):
         told |= _COUNTED
-    for look, figures in ((_proofs, {"behaviour"}), (_extractions, {"extracted", "lvs"}), (_rules, {"drc"})):
+    for look, figures in (
+        (_proofs, {"behaviour"}),
+        (_extractions, {"extracted", "lvs"}),
+        (_rules, {"drc"}),
+        (_drive, set()),
+    ):
         try:
             changes += look(pair)
             told |= figures
         except NotComparable as problem:
             notes.append(str(problem))
+            apart.append(problem.file)
         except UsageError as problem:
             troubles.append(str(problem))
-    if len(notes) == 3:
-        raise NotComparable(notes[0])
+    if len(apart) == 4:
+        raise NotComparable(notes[0], apart[0])
     fields = field_changes(pair.a.facts, pair.b.facts, skip=told)
     # a build that stopped early has fewer figures; that is told by the levels it lacks
     left = tuple(item for item in fields if item.before is not None and item.after is not None)
     changes += [Change("figure", item.name, Sort.CHANGED, worded((replace(item, name=""),)), (item,)) for item in left]
-    return Findings(largest_first(changes), notes, troubles)
+    return Findings(largest_first(changes), notes, troubles, apart)
 
 
 def _proofs(pair: Pair) -> list[Change]:
@@ -96,6 +104,15 @@ def _rules(pair: Pair) -> list[Change]:
         box = (item.x - _AROUND_MM, item.y - _AROUND_MM, item.x + _AROUND_MM, item.y + _AROUND_MM)
         changes.append(replace(change, spots=(Spot("", box),)))
     return changes
+
+
+def _drive(pair: Pair) -> list[Change]:
+    """What must drive the device, and what it gives."""
+    a, b = pair.both("drive.json", DriveLoads)
+    return [
+        Change("drive", item.name, Sort.CHANGED, worded((replace(item, name=""),)), (item,))
+        for item in field_changes(a, b)
+    ]
 
 
 def _by_name(findings: Sequence[Finding]) -> dict[str, Finding]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -37,7 +37,7 @@ class Step:
 
 
 STEPS = (
-    Step("settings", setting_changes, ("process.json",)),
+    Step("settings", setting_changes, ("process.json", "cells.json")),
     Step("program", program_changes, ("device.json",)),
     Step("netlist", netlist_changes, ("netlist.json",)),
     Step("network", network_changes, ("network.json",)),
@@ -45,7 +45,7 @@ STEPS = (
     Step("routing", routing_changes, ("layout.json",)),
     Step("plates", plate_changes, ("plates/",)),
     Step("parts", part_changes, ("parts.json", "sizing.json")),
-    Step("behaviour", behaviour_changes, ("proof.json", "extraction.json", "drc.json")),
+    Step("behaviour", behaviour_changes, ("proof.json", "extraction.json", "drc.json", "drive.json")),
 )
 FILES = "files"
 
@@ -60,15 +60,15 @@ def compare(folder_a: Path, folder_b: Path, tolerance_um: float = DEFAULT_TOLERA
     pair = Pair(a, b, tolerance_um / 1000.0, _renamed(a, b), bodies_of_both(a, b))
     levels: list[Level] = []
     troubles: list[str] = []
+    readers: dict[str, Level] = {}
     for step in STEPS:
-        levels.append(_level(step.name, step.look, pair, troubles))
-    readers = {
-        name: level
-        for step, level in zip(STEPS, levels, strict=True)
-        for name in a.hashes
-        if name in b.hashes and (name in step.files or name.startswith(tuple(f for f in step.files if f.endswith("/"))))
-    }
-    levels.append(_level(FILES, lambda both: file_changes(both, readers), pair, troubles))
+        level, apart = _level(step.name, step.look, pair, troubles)
+        levels.append(level)
+        folders = tuple(name for name in step.files if name.endswith("/"))
+        for name in a.hashes:
+            if name in b.hashes and name not in apart and (name in step.files or name.startswith(folders)):
+                readers[name] = level
+    levels.append(_level(FILES, lambda both: file_changes(both, readers), pair, troubles)[0])
     return Comparison(
         verdict=_verdict(levels, troubles),
         a=_side(a),
@@ -79,20 +79,22 @@ def compare(folder_a: Path, folder_b: Path, tolerance_um: float = DEFAULT_TOLERA
     )
 
 
-def _level(name: str, look: Callable[[Pair], Findings], pair: Pair, troubles: list[str]) -> Level:
+def _level(name: str, look: Callable[[Pair], Findings], pair: Pair, troubles: list[str]) -> tuple[Level, Sequence[str]]:
+    """A level, and the files that it would have read and could not compare."""
     try:
         found = look(pair)
     except NotComparable as problem:
-        return Level(name, LevelState.NOT_COMPARED, reason=str(problem))
+        return Level(name, LevelState.NOT_COMPARED, reason=str(problem)), (problem.file,)
     except UsageError as problem:
         troubles.append(str(problem))
-        return Level(name, LevelState.NOT_COMPARED, reason=str(problem))
+        return Level(name, LevelState.NOT_COMPARED, reason=str(problem)), ()
     troubles.extend(found.troubles)
     if found.changes:
         state = LevelState.DIFFERENT
     else:
         state = LevelState.NOT_COMPARED if found.troubles else LevelState.SAME
-    return Level(name, state, tuple(found.changes), tuple(found.notes), "; ".join(found.troubles))
+    level = Level(name, state, tuple(found.changes), tuple(found.notes), "; ".join(found.troubles))
+    return level, found.apart
 
 
 def _verdict(levels: list[Level], troubles: list[str]) -> Verdict:

@@ -1,8 +1,9 @@
-"""What the report of any version may say: every figure optional, anything unknown ignored."""
+"""What the report of any version may say: but for name, version and files every figure is optional, and what is unknown
+is ignored."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,11 +46,12 @@ class StageFacts:
 class Facts:
     """See ``Report``."""
 
-    design: str = ""
+    design: str
+    version: str
+    files: dict[str, str]
     cells: str = ""
     process: str = ""
     seed: int | None = None
-    version: str = ""
     masses: int | None = None
     couplings: int | None = None
     gates: int | None = None
@@ -64,4 +66,3 @@ class Facts:
     plates: tuple[str, ...] = ()
     tiles: int | None = None
     stages: tuple[StageFacts, ...] = ()
-    files: dict[str, str] = field(default_factory=dict)

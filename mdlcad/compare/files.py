@@ -33,6 +33,12 @@ def file_changes(pair: Pair, readers: Mapping[str, Level]) -> Findings:
             hashes = FieldChange("SHA-256", before, after)
             words = "other bytes" if level is None else f"other bytes, see {level.name}"
             changes.append(Change("file", name, Sort.CHANGED, words, (hashes,)))
+    changes += [
+        Change("file", name, Sort.CHANGED, f"is not the file that was built in {build.label}")
+        for build in (pair.a, pair.b)
+        for name in build.edited
+        if name in REPORTS
+    ]
     missing = [
         f"{build.folder / name}: is missing from the build; build it again"
         for build in (pair.a, pair.b)

@@ -15,7 +15,14 @@ REPORT = "report.json"
 
 
 class NotComparable(Exception):
-    """A level has nothing to compare on one side, and that is as it should be (a build that was stopped before it)."""
+    """A level has nothing to compare on one side, and that is as it should be (a build that was stopped before it).
+
+    ``file`` is what it would have read.
+    """
+
+    def __init__(self, words: str, file: str) -> None:
+        self.file = file
+        super().__init__(words)
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +80,7 @@ def read(build: Build, name: str, kind: type[T]) -> T:
     """
     path = build.folder / name
     if not path.exists() and name not in build.facts.files:
-        raise NotComparable(f"{build.label} has no {name}")
+        raise NotComparable(f"{build.label} has no {name}", name)
     try:
         return load(build.folder, name, kind)
     except ShapeError as problem:
@@ -81,6 +88,7 @@ def read(build: Build, name: str, kind: type[T]) -> T:
             # nobody touched it, so it is whole: only its shape is not this version's
             raise NotComparable(
                 f"{build.label}: {name} was written by another version ({build.facts.version or 'unknown'}) "
-                "in a shape that this one does not read"
+                "in a shape that this one does not read",
+                name,
             ) from problem
         raise

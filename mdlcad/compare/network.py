@@ -22,6 +22,7 @@ def network_changes(pair: Pair) -> Findings:
     couplings = [replace(item, source=pair.mass(item.source), target=pair.mass(item.target)) for item in a.couplings]
     changes += keyed_changes("coupling", _named(couplings), _named(b.couplings), _coupling_words)
     for what, before, after in (
+        ("network", {"design": a.design, "cells": a.cells}, {"design": b.design, "cells": b.cells}),
         ("dynamics", {"dynamics": a.dynamics}, {"dynamics": b.dynamics}),
         ("tick", {"cycles per tick": a.cycles_per_tick}, {"cycles per tick": b.cycles_per_tick}),
         ("tick", {"tick mass": pair.mass(a.tick or "")}, {"tick mass": b.tick or ""}),

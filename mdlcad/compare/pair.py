@@ -16,11 +16,13 @@ T = TypeVar("T")
 
 @dataclass(frozen=True, slots=True)
 class Findings:
-    """What a level found: changes, remarks that are none, and files that cannot be read as they should."""
+    """What a level found: changes, remarks that are none, files that cannot be read as they should, in words, and the
+    names of files that it would have read and could not compare."""
 
     changes: Sequence[Change]
     notes: Sequence[str] = ()
     troubles: Sequence[str] = ()
+    apart: Sequence[str] = ()
 
 
 @dataclass(frozen=True, slots=True)

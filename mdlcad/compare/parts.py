@@ -17,9 +17,10 @@ from mdlcad.errors import UsageError
 from mdlcad.mechanics import Process, Sizing
 from mdlcad.parts.body import Body
 from mdlcad.parts.bom import bill_of_materials
+from mdlcad.parts.store import Parts
 
-# shapes are compared by themselves; what a body moves with follows from its name
-_SHAPES = frozenset({"section", "assembled", "envelope", "name", "moves_with"})
+# shapes are compared by themselves
+_SHAPES = frozenset({"section", "assembled", "envelope", "name"})
 # fields of a sizing that are lengths in mm, for which the tolerance is meant
 _LENGTHS = frozenset({"preload", "amplitude", "offset", "reach", "sweep", "clearance"})
 
@@ -33,17 +34,19 @@ def part_changes(pair: Pair) -> Findings:
     changes: list[Change] = []
     notes: list[str] = []
     troubles: list[str] = []
-    absent = []
-    for look in (_bodies, _sizes):
+    apart: list[str] = []
+    looks = (_bodies, _carriers, _sizes)
+    for look in looks:
         try:
             changes += look(pair)
         except NotComparable as problem:
-            absent.append(str(problem))
+            notes.append(str(problem))
+            apart.append(problem.file)
         except UsageError as problem:
             troubles.append(str(problem))
-    if len(absent) == 2:
-        raise NotComparable("; ".join(absent))
-    return Findings(largest_first(changes), notes + absent, troubles)
+    if len(apart) == len(looks):
+        raise NotComparable("; ".join(notes), apart[0])
+    return Findings(largest_first(changes), notes, troubles, apart)
 
 
 def _bodies(pair: Pair) -> list[Change]:
@@ -54,7 +57,8 @@ def _bodies(pair: Pair) -> list[Change]:
     changes += [_whole(name, Sort.ADDED, bodies_b[name]) for name in bodies_b if name not in bodies_a]
     for name, before in bodies_a.items():
         if name in bodies_b:
-            change = _changed(name, before, bodies_b[name], pair.tolerance_mm)
+            holds = tuple(_held(pair, item) for item in before.moves_with)
+            change = _changed(name, replace(before, moves_with=holds), bodies_b[name], pair.tolerance_mm)
             if change is not None:
                 changes.append(change)
     return changes + _materials(pair, a, b)
@@ -67,6 +71,12 @@ def _renamed(pair: Pair, name: str) -> str:
     if number and index.isdigit() and net in pair.renamed:
         return f"{kind}.{pair.mass(net)}.{index}"
     return kind + dot + pair.coupling(pair.mass(rest))
+
+
+def _held(pair: Pair, holder: str) -> str:
+    """A body's reference ("mass:NAME", "clock:K", "frame") in B's names."""
+    kind, colon, name = holder.partition(":")
+    return kind + colon + pair.mass(name) if kind == "mass" else holder
 
 
 def _whole(name: str, sort: Sort, body: Body) -> Change:
@@ -150,6 +160,13 @@ def _bill(bodies: Sequence[Body], process: Process) -> dict[str, Mapping[str, in
         for line in bill.stock
     }
     return lines
+
+
+def _carriers(pair: Pair) -> list[Change]:
+    """How stiff the carriers are, as each coupler feels it."""
+    a, b = pair.both("parts.json", Parts)
+    named = {item.coupling: item for item in (replace(c, coupling=pair.coupling(c.coupling)) for c in a.carriers)}
+    return keyed_changes("carrier stiffness", named, {item.coupling: item for item in b.carriers})
 
 
 def _sizes(pair: Pair) -> list[Change]:

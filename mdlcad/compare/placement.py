@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import replace
 from math import hypot
 
 from mdlcad.compare.change import Change, FieldChange, Sort, Spot
 from mdlcad.compare.fields import counted, keyed_changes, largest_first, same_number
+from mdlcad.compare.folders import Build, NotComparable, read
 from mdlcad.compare.pair import Findings, Pair
+from mdlcad.errors import UsageError
 from mdlcad.placement.placement import PlacedMass, Placement
+from mdlcad.placement.unit_grid import GridPlacement
 
 # half the side of the box that shows a unit or port whose own extent the placement does not say
 _AROUND_MM = 6.0
@@ -17,6 +21,8 @@ _AROUND_MM = 6.0
 
 def placement_changes(pair: Pair) -> Findings:
     """Changes of the placement, largest first, and remarks."""
+    if all(_on_grid(build) for build in (pair.a, pair.b)):
+        return _grid_changes(pair)
     a, b = pair.both("placement.json", Placement)
     units_a = {pair.mass(unit.mass): unit for unit in a.masses}
     units_b = {unit.mass: unit for unit in b.masses}
@@ -48,7 +54,11 @@ def placement_changes(pair: Pair) -> Findings:
                 changes.append(move)
             fields = tuple(
                 FieldChange(label, one, other)
-                for label, one, other in (("mass", pair.mass(old.mass), new.mass), ("line", old.line, new.line))
+                for label, one, other in (
+                    ("mass", pair.mass(old.mass), new.mass),
+                    ("line", old.line, new.line),
+                    ("normal", str(old.normal), str(new.normal)),
+                )
                 if one != other
             )
             if fields:
@@ -72,6 +82,25 @@ def placement_changes(pair: Pair) -> Findings:
     return Findings(largest_first(changes), notes)
 
 
+def _on_grid(build: Build) -> bool:
+    """The build's library has no parts, and its masses stand on the program's grid."""
+    try:
+        read(build, "placement.json", GridPlacement)
+    except (NotComparable, UsageError):
+        return False
+    return True
+
+
+def _grid_changes(pair: Pair) -> Findings:
+    a, b = pair.both("placement.json", GridPlacement)
+    masses_a = {pair.mass(unit.mass): replace(unit, mass=pair.mass(unit.mass)) for unit in a.masses}
+    changes = keyed_changes("mass", masses_a, {unit.mass: unit for unit in b.masses})
+    changes += keyed_changes("port", {port.bit: port for port in a.ports}, {port.bit: port for port in b.ports})
+    skip = frozenset({"masses", "ports"})
+    changes += keyed_changes("placement", {"on the grid": a}, {"on the grid": b}, skip=skip)
+    return Findings(largest_first(changes), ["masses stand on the program's grid: lengths are grid units"])
+
+
 def _lattice(pair: Pair, a: Placement, b: Placement) -> list[Change]:
     changes = keyed_changes(
         "lattice",
@@ -79,6 +108,11 @@ def _lattice(pair: Pair, a: Placement, b: Placement) -> list[Change]:
         {"columns": len(b.column_x), "rows": len(b.row_y), "usable slots": len(b.slots)},
     )
     changes += keyed_changes("lattice", {"mm per grid unit": a.mm_per_grid}, {"mm per grid unit": b.mm_per_grid})
+    if len(a.slots) == len(b.slots):
+        changes += keyed_changes("lattice", {"slots": sorted(a.slots)}, {"slots": sorted(b.slots)})
+    for what, one, other in (("x of columns", a.column_x, b.column_x), ("y of rows", a.row_y, b.row_y)):
+        if len(one) == len(other):
+            changes += keyed_changes("lattice", {what: one}, {what: other}, tolerance=pair.tolerance_mm)
     if not _same_points(a.boundary, b.boundary, pair.tolerance_mm):
         width, height = _extent(a.boundary)
         wider, higher = _extent(b.boundary)

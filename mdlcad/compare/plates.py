@@ -52,7 +52,7 @@ def plate_changes(pair: Pair) -> Findings:
     names_a, names_b = _names(pair.a.hashes, drawn_a), _names(pair.b.hashes, drawn_b)
     for names, build in ((names_a, pair.a), (names_b, pair.b)):
         if not names:
-            raise NotComparable(f"{build.label} has no plates")
+            raise NotComparable(f"{build.label} has no plates", "plates/")
     changes = [Change("plate", name, Sort.REMOVED) for name in names_a if name not in names_b]
     changes += [Change("plate", name, Sort.ADDED) for name in names_b if name not in names_a]
     for name in names_a:

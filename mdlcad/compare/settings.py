@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from mdlcad.compare.change import Change, Sort
 from mdlcad.compare.fields import field_changes, worded
 from mdlcad.compare.folders import NotComparable
@@ -19,14 +21,17 @@ def setting_changes(pair: Pair) -> Findings:
         Change("setting", item.name, Sort.CHANGED, worded((item,)).removeprefix(f"{item.name} "), (item,))
         for item in field_changes(before, after)
     ]
-    notes = []
-    try:
-        a, b = pair.both("process.json", Process)
-    except NotComparable as problem:
-        notes.append(str(problem))
-    else:
-        changes += [
-            Change("process", item.name, Sort.CHANGED, worded((item,)).removeprefix(f"{item.name} "), (item,))
-            for item in field_changes(a, b, skip=frozenset({"name", "summary"}))
-        ]
-    return Findings(changes, notes)
+    notes, apart = [], []
+    # what a library holds differs from kind to kind, so it is compared as it is written
+    for what, name, kind in (("process", "process.json", Process), ("cells", "cells.json", dict[str, Any])):
+        try:
+            a, b = pair.both(name, kind)
+        except NotComparable as problem:
+            notes.append(str(problem))
+            apart.append(problem.file)
+        else:
+            changes += [
+                Change(what, item.name, Sort.CHANGED, worded((item,)).removeprefix(f"{item.name} "), (item,))
+                for item in field_changes(a, b, skip=frozenset({"name", "summary"}))
+            ]
+    return Findings(changes, notes, apart=apart)

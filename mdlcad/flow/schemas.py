@@ -8,6 +8,7 @@ import msgspec
 
 from mdlcad.artefact import to_json
 from mdlcad.compare.change import Comparison
+from mdlcad.compare.history import History
 from mdlcad.errors import UsageError
 from mdlcad.language import Device
 from mdlcad.mapping.library import Library
@@ -44,6 +45,7 @@ ARTEFACTS: dict[str, Any] = {
     "report": Report,
     "result": ScenarioResult,
     "diff": Comparison,
+    "history": History,
 }
 
 

@@ -9,7 +9,7 @@ import shapely
 from shapely import Polygon
 
 from mdlcad.artefact import checksum, load
-from mdlcad.errors import SignoffError, UsageError
+from mdlcad.errors import InputError, SignoffError, UsageError
 from mdlcad.export.mesh import check_stl
 from mdlcad.flow.folder import REPORT
 from mdlcad.language import Device
@@ -40,6 +40,21 @@ def verify(folder: Path, workers: int, say: Callable[[str], None]) -> list[str]:
     if not folder.is_dir():
         raise UsageError(f"{folder}: no such build folder")
     report = load(folder, REPORT, Report)
+    try:
+        return _verify(folder, report, workers, say)
+    except (UsageError, InputError, SignoffError):
+        raise
+    # Files of the right shape that a report vouches for may still contradict each other in ways that no build makes,
+    # and all that reads them relies on a build. Whatever that leads to, it is the folder's fault, and a traceback would
+    # not say so.
+    except Exception as problem:
+        raise UsageError(
+            f"{folder}: its files contradict each other or hold what no build makes ({type(problem).__name__}: "
+            f"{problem}); was one edited, and report.json with it? build it again"
+        ) from problem
+
+
+def _verify(folder: Path, report: Report, workers: int, say: Callable[[str], None]) -> list[str]:
     if report.extracted is None:
         raise UsageError(f"{folder}: was stopped before its sign-off (--to); build it whole to verify it")
     broken: list[str] = []

@@ -8,8 +8,9 @@ from dataclasses import replace
 from pathlib import Path
 
 import matplotlib.style
+import msgspec
 
-from mdlcad.artefact import load, to_json, write_atomic
+from mdlcad.artefact import checksum, load, to_json, write_atomic
 from mdlcad.errors import UsageError
 from mdlcad.language import Device
 from mdlcad.network.model import Network
@@ -42,12 +43,13 @@ def run_scenario(folder: Path, scenario: str | None, say: Callable[[str], None])
     placement.json the masses are drawn in their slots.
 
     Returns:
-        What did not hold, in words; empty if all holds.
+        What did not hold, in words; empty if all holds. Files edited since the build are among it.
 
     Raises:
         UsageError: the build or the scenario cannot be used; nothing was written.
     """
     device, network = load(folder, "device.json", Device), load(folder, "network.json", Network)
+    edited = _edited(folder)
     name, world = chosen_world(scenario, device)
     seats = _seats(folder, device, network)
     reference = build_reference(device)
@@ -56,7 +58,7 @@ def run_scenario(folder: Path, scenario: str | None, say: Callable[[str], None])
     except NoTick as problem:
         with matplotlib.style.context("default"):
             _write(folder, name, {"network.png": picture(network, seats)})
-        return [str(problem)]
+        return [*edited, str(problem)]
     result = _result(name, network, journey)
     for line in _telling(result):
         say(line)
@@ -65,7 +67,7 @@ def run_scenario(folder: Path, scenario: str | None, say: Callable[[str], None])
     result = replace(result, files=tuple(files))
     place = _write(folder, name, {**files, RESULT: to_json(result)})
     say(f"written to {place}: {', '.join((*files, RESULT))}")
-    return list(result.failures)
+    return [*edited, *result.failures]
 
 
 def chosen_world(scenario: str | None, device: Device) -> tuple[str, Maze | Hands]:
@@ -133,6 +135,30 @@ def _draw(
         graph = explore(reference, 0)
         yield "states.png", machine(result, f"{'' if graph.complete else 'at least '}{len(graph.states)}")
     yield "run.gif", animation(network, seats, journey, steps, x, result.decisions)
+
+
+class _Vouched(msgspec.Struct):
+    """What the report of a build says of its files: SHA-256 by path."""
+
+    files: dict[str, str]
+
+
+def _edited(folder: Path) -> list[str]:
+    """Files read here that are not the ones the build's report vouches for, in words; a folder may have no report.
+
+    Raises:
+        UsageError: one that the report vouches for is not there.
+    """
+    if not (folder / "report.json").exists():
+        return []
+    vouched = load(folder, "report.json", _Vouched).files
+    found = []
+    for name in ("device.json", "network.json", "placement.json"):
+        if name in vouched and not (folder / name).is_file():
+            raise UsageError(f"{folder / name}: is missing from the build; build it again")
+        if name in vouched and checksum((folder / name).read_bytes()) != vouched[name]:
+            found.append(f"{name}: is not the file that was built (its SHA-256 differs from report.json)")
+    return found
 
 
 def _seats(folder: Path, device: Device, network: Network) -> Seats:

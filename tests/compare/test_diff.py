@@ -196,6 +196,18 @@ def test_a_build_of_another_version_is_compared_as_far_as_it_can_be_read(voter_b
     assert "another version (0.0.7)" in level.reason
 
 
+def test_a_file_that_could_not_be_compared_is_never_the_same_in_meaning(voter_build, copy):
+    from mdlcad.artefact import checksum
+
+    with edited(copy, "parts.json") as parts:
+        parts["bodies"][0]["kind"] = "of another version"
+    with edited(copy, "report.json") as report:
+        report["files"]["parts.json"] = checksum((copy / "parts.json").read_bytes())
+    found = compare(voter_build, copy)
+    assert found.verdict is Verdict.DIFFERENT
+    assert ("changed", "file", "parts.json") in changes(found, "files")
+
+
 @pytest.mark.parametrize(
     ("name", "damage", "words"),
     [
