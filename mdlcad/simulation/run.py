@@ -8,8 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mdlcad.simulation.kernel import BLOCK, advance_block, advance_one
-from mdlcad.simulation.system import Floats, Ints, System, wave_table
+from mdlcad.simulation.kernel_lanes import BLOCK, advance_block
+from mdlcad.simulation.kernel_single import advance_one
+from mdlcad.simulation.plan import plan_of, turn_table
+from mdlcad.simulation.system import Floats, Ints, System
 
 STEPS_PER_PERIOD = 400
 
@@ -18,7 +20,7 @@ STEPS_PER_PERIOD = 400
 _STEP_LIMIT = 0.5
 
 # Below this many lanes, one lane after the other is faster than a block padded to BLOCK lanes.
-_SINGLES = 6
+_SINGLES = 4
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -110,13 +112,16 @@ def simulate(
     # The last block may be padded with undriven lanes, which are dropped at the end.
     padded = blocks[-1][0] + blocks[-1][1]
     force = np.zeros((stimulus.force.shape[0], stimulus.force.shape[1], padded))
-    force[:, :, :lanes] = stimulus.force
+    force[:, :, :lanes] = stimulus.force / system.inertia
     x = np.ascontiguousarray(np.repeat(system.initial[:, None], padded, axis=1))
     v = np.zeros((n, padded))
     peak = np.zeros((n, padded))
     readings = np.full((-(-steps // steps_per_period), len(watch.masses), padded), np.nan)
     trace = np.zeros((steps // trace_stride + 1 if trace_stride else 0, n, padded))
-    waves = wave_table(system.phases, 2 * steps_per_period)
+    turn = turn_table(2 * steps_per_period)
+
+    plan = plan_of(system)
+    place = plan.place()
 
     def advance(block: tuple[int, int]) -> None:
         start, width = block
@@ -126,31 +131,15 @@ def simulate(
             x,
             v,
             peak,
-            system.phase,
-            system.stiffness_base,
-            system.stiffness_swing,
-            system.bias,
-            system.row_start,
-            system.column,
-            system.base,
-            system.swing,
-            system.wave,
-            system.latch_clock,
-            system.latch_mass,
-            system.latch_base,
-            system.latch_swing,
-            system.latch_wave,
-            waves,
-            stimulus.masses,
+            plan,
+            turn,
+            place[stimulus.masses],
             force,
             stimulus.first_steps,
             stimulus.interval_steps,
             steps,
             system.period / steps_per_period,
-            1.0 / system.inertia,
-            system.damping,
-            system.quartic,
-            watch.masses,
+            place[watch.masses],
             watch.instants,
             readings,
             trace_stride,
