@@ -1,149 +1,126 @@
-"""Speed of the RK4 kernel against vectorised NumPy and scipy on the same work in the same run.
+"""Speed of the RK4 kernel against its peers: the same work in the same run, on one core each.
 
-    python tests/benchmarks/bench_simulation.py [masses] [periods]
+    ./run bench
 
-Work is counted in mass-steps: masses x steps x lanes. The NumPy solver takes the same RK4 steps (its couplings are a
-sparse matrix product) and must end where the kernel ends. scipy's adaptive DOP853 is asked for the error that the
-kernel really has on this work, and its time is compared for the same simulated time.
+Work is counted in mass-steps: masses x steps x lanes. All fixed-step solvers take the same 400 steps a period; SciPy's
+adaptive ones are asked for the error that RK4 really has here, and their time for the same simulated time counts. The
+error is against DOP853 at a tolerance of 1e-12. All solvers take turns, several rounds of them, and the best time of
+each counts: so another program on the machine slows all of them or none.
 """
 
 from __future__ import annotations
 
+import os
+
+# one core each, before anybody reads it
+os.environ.update(
+    OMP_NUM_THREADS="1",
+    OPENBLAS_NUM_THREADS="1",
+    XLA_FLAGS="--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1",
+)
+
+import importlib.util
 import sys
 import time
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
-from scipy.integrate import solve_ivp
-from scipy.sparse import csr_array
 
-from mdlcad.network.model import Coupling, Dynamics, Mass, MassKind, Network
 from mdlcad.simulation.run import STEPS_PER_PERIOD, simulate, undriven
-from mdlcad.simulation.system import System, system_of, wave_table
+from mdlcad.simulation.system import System, system_of
+from tests.benchmarks import peers
+from tests.benchmarks.devices import maze, random_parametron
+
+PERIODS = 5
+ROUNDS = 3
+TURN = 0.3  # seconds: a solver that is done earlier runs again within its turn
+LANES = 16
 
 
-def random_parametron(masses: int, seed: int = 0) -> Network:
-    """Compensated three-phase masses with 1.45 springs each, phase to next phase."""
-    rng = np.random.default_rng(seed)
-    couplings = []
-    load = np.zeros(masses)
-    for _ in range(int(1.45 * masses)):
-        source = int(rng.integers(masses))
-        target = int(rng.choice(np.arange(masses)[np.arange(masses) % 3 == (source + 1) % 3]))
-        couplings.append(Coupling(f"m{source}", f"m{target}", 0.3 * float(rng.choice([-1, 1])), 0.3))
-        load[[source, target]] += 0.3
-    return Network(
-        "random",
-        "none",
-        Dynamics(0.05, 0.25, 1.0, 10.0, 3),
-        tuple(
-            Mass(f"m{i}", MassKind.GATE, i % 3, 3.0, -2.75, -float(load[i]), 0.5 * (i % 2), float(rng.choice([-1, 1])))
-            for i in range(masses)
-        ),
-        tuple(couplings),
-        (),
-        (),
-        (),
-        None,
-        1,
-    )
+@dataclass(frozen=True, slots=True)
+class Solver:
+    """What takes part: ``solve`` gives final displacements, float[n] or float[n, lanes]."""
+
+    name: str
+    solve: Callable[[], np.ndarray]
+    lanes: int = 1
 
 
-def acceleration(system: System) -> Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]:
-    """a(x, v, waves), vectorised over masses."""
+def solvers(system: System, exact: np.ndarray) -> list[Solver]:
+    steps = PERIODS * STEPS_PER_PERIOD
+    ours = [
+        Solver("kernel", lambda: simulate(system, undriven(), steps).x[:, 0]),
+        Solver(f"kernel, {LANES} lanes", lambda: simulate(system, undriven(LANES), steps).x, LANES),
+    ]
+    theirs = [
+        Solver("NumPy RK4, dense", lambda: peers.numpy_rk4(system, steps, sparse=False)),
+        Solver("NumPy RK4, sparse", lambda: peers.numpy_rk4(system, steps, sparse=True)),
+        Solver(f"NumPy RK4, {LANES} lanes", lambda: peers.numpy_rk4(system, steps, True, LANES), LANES),
+    ]
+    error = float(np.abs(ours[0].solve() - exact).max())
+    for method in ("DOP853", "RK45"):
+        for tolerance in 10.0 ** -np.arange(3, 12):
+            found = peers.scipy_solution(system, PERIODS * system.period, tolerance, method)
+            if np.abs(found - exact).max() <= error:
+                break
+        theirs.append(
+            Solver(
+                f"solve_ivp {method} {tolerance:.0e}",
+                lambda method=method, tolerance=tolerance: peers.scipy_solution(
+                    system, PERIODS * system.period, tolerance, method
+                ),
+            )
+        )
+    if importlib.util.find_spec("diffrax"):
+        theirs += [Solver(f"diffrax {name}", peers.diffrax_solution(system, steps, name)) for name in ("RK4", "Tsit5")]
+        theirs += [
+            Solver("JAX, RK4 by hand", peers.jax_rk4(system, steps)),
+            Solver(f"diffrax RK4, {LANES} lanes", peers.diffrax_solution(system, steps, "RK4", LANES), LANES),
+            Solver(f"JAX by hand, {LANES} lanes", peers.jax_rk4(system, steps, LANES), LANES),
+        ]
+    return ours + theirs
+
+
+def measure(title: str, system: System) -> None:
+    """Print one line a solver, and the ratios that count."""
+    steps = PERIODS * STEPS_PER_PERIOD
+    exact = peers.scipy_solution(system, PERIODS * system.period, 1e-12)
+    entrants = solvers(system, exact)
+    best = {entrant.name: float("inf") for entrant in entrants}
+    error = {}
+    for _ in range(ROUNDS):
+        for entrant in entrants:
+            turn = time.perf_counter()
+            while (start := time.perf_counter()) < turn + TURN:
+                x = entrant.solve()
+                best[entrant.name] = min(best[entrant.name], time.perf_counter() - start)
+            error[entrant.name] = float(np.abs((x if x.ndim == 1 else x[:, 0]) - exact).max())
     n = len(system.names)
-    springs = csr_array((system.base, system.column, system.row_start), shape=(n, n))
-
-    def a(x: np.ndarray, v: np.ndarray, waves: np.ndarray) -> np.ndarray:
-        stiffness = system.stiffness_base + system.stiffness_swing * waves[system.phase]
-        force = springs @ x - system.bias - (stiffness + system.quartic * x * x) * x
-        return (force - system.damping * v) / system.inertia
-
-    return a
-
-
-def numpy_rk4(system: System, steps: int) -> np.ndarray:
-    """Final displacements after ``steps`` RK4 steps."""
-    a = acceleration(system)
-    h = system.period / STEPS_PER_PERIOD
-    table = wave_table(system.phases, 2 * STEPS_PER_PERIOD)
-    x, v = system.initial.copy(), np.zeros(len(system.initial))
-    for step in range(steps):
-        w0, w1, w2 = (table[(2 * step + half) % len(table)] for half in range(3))
-        a1 = a(x, v, w0)
-        v2 = v + 0.5 * h * a1
-        a2 = a(x + 0.5 * h * v, v2, w1)
-        v3 = v + 0.5 * h * a2
-        a3 = a(x + 0.5 * h * v2, v3, w1)
-        v4 = v + h * a3
-        a4 = a(x + h * v3, v4, w2)
-        x = x + h / 6 * (v + 2 * v2 + 2 * v3 + v4)
-        v = v + h / 6 * (a1 + 2 * a2 + 2 * a3 + a4)
-    return x
-
-
-def scipy_solution(system: System, time_end: float, tolerance: float) -> np.ndarray:
-    """Final displacements by DOP853."""
-    a = acceleration(system)
-    n = len(system.initial)
-    turn = 2 * np.pi
-
-    def slope(t: float, y: np.ndarray) -> np.ndarray:
-        waves = 1 + np.sin(turn * t / system.period - turn * np.arange(system.phases) / system.phases)
-        return np.concatenate([y[n:], a(y[:n], y[n:], waves)])
-
-    start = np.concatenate([system.initial, np.zeros(n)])
-    return solve_ivp(slope, (0, time_end), start, method="DOP853", rtol=tolerance, atol=tolerance).y[:n, -1]
-
-
-def timed(work: Callable[[], np.ndarray], repeats: int = 3) -> tuple[np.ndarray, float]:
-    """The result and the best time of ``repeats``, in seconds."""
-    best = float("inf")
-    for _ in range(repeats):
-        start = time.perf_counter()
-        result = work()
-        best = min(best, time.perf_counter() - start)
-    return result, best
+    rate = {entrant.name: n * steps * entrant.lanes / best[entrant.name] / 1e6 for entrant in entrants}
+    print(f"\n{title}: {n} masses, {len(system.base) + len(system.latch_base)} coupling entries, {steps} steps")
+    for entrant in entrants:
+        ratio = rate["kernel" if entrant.lanes == 1 else f"kernel, {LANES} lanes"] / rate[entrant.name]
+        print(
+            f"  {entrant.name:24} {rate[entrant.name]:8.2f} M mass-steps/s  error {error[entrant.name]:.0e}"
+            f"  kernel is {ratio:6.1f} times as fast"
+        )
+    numpy = max(rate["NumPy RK4, dense"], rate["NumPy RK4, sparse"])
+    print(f"  one run against the better NumPy: {rate['kernel'] / numpy:.0f} times (aim 25)")
+    if "diffrax RK4" in rate:
+        peer = max(rate[name] for name in ("diffrax RK4", "diffrax Tsit5", "JAX, RK4 by hand"))
+        print(f"  one run against the best compiled peer: {rate['kernel'] / peer:.0f} times (aim 3)")
+    else:
+        print("  diffrax is not installed here; ./run bench installs it")
+    print(f"  lanes against one NumPy run: {rate[f'kernel, {LANES} lanes'] / numpy:.0f} times (aim 100)")
 
 
 def main() -> None:
-    """Print one line a solver."""
-    masses = int(sys.argv[1]) if len(sys.argv) > 1 else 187
-    periods = int(sys.argv[2]) if len(sys.argv) > 2 else 10
-    steps = periods * STEPS_PER_PERIOD
-    system = system_of(random_parametron(masses))
-    simulate(system, undriven(), 1)
-    simulate(system, undriven(16), 1)  # compiled now, or read from the cache
-
-    x, seconds = timed(lambda: simulate(system, undriven(), steps).x[:, 0])
-    slow, numpy_seconds = timed(lambda: numpy_rk4(system, steps), 1)
-    exact = simulate(system, undriven(), 16 * steps, steps_per_period=16 * STEPS_PER_PERIOD).x[:, 0]
-    error = float(np.abs(x - exact).max())
-    for tolerance in 10.0 ** -np.arange(3, 12):
-        other, scipy_seconds = timed(lambda tol=tolerance: scipy_solution(system, periods * system.period, tol), 1)
-        scipy_error = float(np.abs(other - exact).max())
-        if scipy_error <= error:
-            break
-    rate = masses * steps / seconds / 1e6
-    print(f"{masses} masses, {steps} steps; error of the kernel {error:.1e}")
-    print(f"kernel, 1 lane            {rate:8.1f} M mass-steps/s")
-    print(
-        f"NumPy RK4, same steps     {masses * steps / numpy_seconds / 1e6:8.1f} M mass-steps/s   "
-        f"kernel is {numpy_seconds / seconds:.0f} times as fast, same result to {np.abs(slow - x).max():.0e}"
-    )
-    print(
-        f"scipy DOP853 (error {scipy_error:.0e}) {scipy_seconds:.2f} s against {seconds:.3f} s   "
-        f"kernel is {scipy_seconds / seconds:.0f} times as fast"
-    )
-    for lanes, workers in ((16, 1), (64, 1), (64, 2)):
-        _, together = timed(
-            lambda lanes=lanes, workers=workers: simulate(system, undriven(lanes), steps, workers=workers).x
-        )
-        print(
-            f"kernel, {lanes:2} lanes, {workers} thread{'s' if workers > 1 else ' '} "
-            f"{masses * steps * lanes / together / 1e6:8.1f} M mass-steps/s   "
-            f"{masses * steps * lanes / together / 1e6 / rate:.1f} times one lane"
-        )
+    """Measure the maze with both cell libraries, and a random network of the size of the paper's maze."""
+    print(f"Python {sys.version.split()[0]}, NumPy {np.__version__}; {ROUNDS} rounds, best of each")
+    measure("maze, parametron", system_of(maze("parametron")))
+    measure("maze, two_phase", system_of(maze("two_phase")))
+    measure("random parametron", system_of(random_parametron(187)))
 
 
 if __name__ == "__main__":
