@@ -143,6 +143,14 @@ def system_of(network: Network) -> System:
     )
 
 
+def wave_table(phases: int, points: int) -> Floats:
+    """float[points, phases]: p_k = 1 + sin(2 pi t/T - 2 pi k/P) at t = T point / points."""
+    turn = 2.0 * math.pi
+    return _floats(
+        [[1.0 + math.sin(turn * (point / points - k / phases)) for k in range(phases)] for point in range(points)]
+    )
+
+
 def energy(system: System, x: Floats, v: Floats, waves: Floats) -> float:
     """Kinetic energy plus V (see ``network.model``) of state ``x``, ``v`` (float[n] each) at clock waves float[P]."""
     stiffness = system.stiffness_base + system.stiffness_swing * waves[system.phase]

@@ -40,9 +40,3 @@ def random_network(seed: int, n: int = 9, couplings: int = 14, latches: int = 3,
         )
     dynamics = Dynamics(inertia=0.05, damping=damping, quartic=1.0, period=4.0, phases=3)
     return Network("random", "none", dynamics, masses, tuple(pairs), (), (), (), None, 1)
-
-
-def wave_table(phases: int, points: int) -> np.ndarray:
-    """float[points, phases]: the clock waves p_k at t = T point / points."""
-    turns = np.arange(points)[:, None] / points - np.arange(phases) / phases
-    return 1.0 + np.sin(2.0 * np.pi * turns)

@@ -10,8 +10,8 @@ import pytest
 from mdlcad.network.model import Dynamics, Mass, MassKind, Network
 from mdlcad.simulation.decode import UNDECIDED, decode, instants, wells
 from mdlcad.simulation.run import simulate, steps_for, undriven
-from mdlcad.simulation.system import system_of
-from tests.simulation.networks import random_network, wave_table
+from mdlcad.simulation.system import system_of, wave_table
+from tests.simulation.networks import random_network
 
 
 def masses(phases: int, **numbers: float) -> Network:

@@ -17,8 +17,8 @@ from scipy.integrate import solve_ivp
 from mdlcad.errors import UsageError
 from mdlcad.network.model import CouplingKind, Dynamics, Mass, MassKind, Network
 from mdlcad.simulation.run import Stimulus, Watch, simulate, undriven
-from mdlcad.simulation.system import energy, system_of
-from tests.simulation.networks import random_network, wave_table
+from mdlcad.simulation.system import energy, system_of, wave_table
+from tests.simulation.networks import random_network
 
 
 def potential(network: Network, x: np.ndarray, t: float) -> Any:
