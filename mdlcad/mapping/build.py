@@ -170,11 +170,15 @@ def _power_up(network: Network, library: Library, tick_cycle: int, registers: di
 
     # From any start the ring falls into step; the registers are held by hand while the logic around them settles.
     history = [state]
-    settling = len(network.masses) + 4 * network.cycles_per_tick
-    for _ in range(settling):
+    # Once all is as it was a decision before it stays so; then the last two decisions are what is wanted.
+    period = network.cycles_per_tick
+    settling = len(network.masses) + 4 * period
+    while len(history) <= settling:
         hold_registers(state)
         state = logic.cycle(state)
         history.append(state)
+        if len(history) > 2 * period and np.array_equal(state, history[-1 - period]):
+            settling = min(settling, len(history) - 1 + 2 * period)
     chosen = history[-1]
     if network.tick is not None:
         row = logic.index[network.tick]

@@ -10,6 +10,9 @@ from mdlcad.mapping.threshold import Threshold, match
 
 MOST_LEAVES = 4
 _MOST_CUTS = 40
+# of all nodes together; a larger graph gets fewer a node, but never fewer than the least
+_ALL_CUTS = 40_000
+_LEAST_CUTS = 10
 _PASSES = 2
 
 Cut = tuple[int, ...]
@@ -49,6 +52,7 @@ def find_candidates(subject: Subject, weight_limit: int) -> list[tuple[Candidate
 
 def _cuts(subject: Subject) -> list[list[Cut]]:
     cuts: list[list[Cut]] = [[(node,)] for node in range(len(subject.ways))]
+    most = max(_LEAST_CUTS, min(_MOST_CUTS, _ALL_CUTS // len(cuts)))
     for _ in range(_PASSES if subject.exact else 1):
         for node, ways in enumerate(subject.ways):
             if not ways:
@@ -59,7 +63,7 @@ def _cuts(subject: Subject) -> list[list[Cut]]:
                     merged = tuple(sorted({*left, *right}))
                     if len(merged) <= MOST_LEAVES and node not in merged:
                         found.add(merged)
-            cuts[node] = sorted(found, key=lambda cut: (cut != (node,), len(cut), cut))[:_MOST_CUTS]
+            cuts[node] = sorted(found, key=lambda cut: (cut != (node,), len(cut), cut))[:most]
     return cuts
 
 

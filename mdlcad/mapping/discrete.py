@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import coo_array, csr_array
 
 from mdlcad.network.model import Network
 
@@ -25,10 +26,10 @@ class DiscreteNetwork:
         self.index = {mass.name: row for row, mass in enumerate(network.masses)}
         self.phases = network.dynamics.phases
         size = len(network.masses)
-        self._weights = np.zeros((size, size))
-        for coupling in network.couplings:
-            row = self.index[coupling.target]
-            self._weights[row, self.index[coupling.source]] += coupling.strength / unit_strength
+        rows = [self.index[coupling.target] for coupling in network.couplings]
+        columns = [self.index[coupling.source] for coupling in network.couplings]
+        values = [coupling.strength / unit_strength for coupling in network.couplings]
+        weights = csr_array(coo_array((values, (rows, columns)), shape=(size, size)))
         self._bias = np.array([[-mass.bias / unit_bias] for mass in network.masses])
         driven = {bit.mass for bit in network.sensors}
         self._rows = [
@@ -38,6 +39,7 @@ class DiscreteNetwork:
             )
             for phase in range(self.phases)
         ]
+        self._weights = [weights[rows] for rows in self._rows]
 
     def cycle(self, state: Signs) -> Signs:
         """int8[masses, runs] one power-clock cycle later; sensor masses keep their values.
@@ -46,9 +48,9 @@ class DiscreteNetwork:
             ValueError: the inputs of a mass cancel, so that it has no value.
         """
         state = state.copy()
-        for rows in self._rows:
+        for rows, weights in zip(self._rows, self._weights, strict=True):
             if len(rows):
-                total = self._weights[rows] @ state + self._bias[rows]
+                total = weights @ state + self._bias[rows]
                 if np.any(np.abs(total) < 0.5):
                     raise ValueError("the inputs of a mass cancel")
                 state[rows] = np.where(total > 0, 1, -1)

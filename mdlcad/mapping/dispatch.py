@@ -10,6 +10,7 @@ from mdlcad.artefact import load
 from mdlcad.errors import UsageError
 from mdlcad.mapping import library as parametron
 from mdlcad.mapping import mapper
+from mdlcad.mapping.liberty import threshold_liberty
 from mdlcad.mapping.request import AS_WRITTEN, MappingRequest
 from mdlcad.mapping.two_phase import TwoPhaseLibrary, liberty, load_two_phase, map_two_phase
 from mdlcad.mapping.two_phase.load import library_kind
@@ -71,6 +72,9 @@ def map_netlist(netlist: Netlist, library: Library, effort: mapper.Effort | None
     return mapper.map_netlist(netlist, library, effort or mapper.Effort())
 
 
-def liberty_view(library: Library) -> str | None:
-    """The Liberty text that logic synthesis sees of ``library``; None if it is mapped without."""
-    return liberty(library) if isinstance(library, TwoPhaseLibrary) else None
+def liberty_view(library: Library) -> str:
+    """The cells of ``library`` as Liberty text.
+
+    Of a two-phase library it is what ABC maps with; of a threshold library the gates that our own mapper chooses from.
+    """
+    return liberty(library) if isinstance(library, TwoPhaseLibrary) else threshold_liberty(library)

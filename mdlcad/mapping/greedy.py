@@ -22,6 +22,9 @@ _HEAT = 18.0
 _RESTARTS = 3
 # A small device has few tastes; more passes find nothing new.
 _MOST_ROUNDS = 1500
+# Options in a graph above which a node is made from older ones alone: looking for loops of logic takes time with the
+# square of the device's size.
+_MOST_LOOPING = 40_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,6 +50,8 @@ class Pass:
     def __init__(self, graph: OptionGraph) -> None:
         self._graph = graph
         self._flow = _area_flow(graph)
+        # without truth tables nodes are only ever built from older ones, so there can be no loop
+        self.falling = not graph.subject.exact or graph.size > _MOST_LOOPING
 
     def select(self, taste: Taste, *, falling: bool = False) -> Selection | None:
         """The selection of that taste, or None if it leads into a loop of logic.
@@ -183,7 +188,7 @@ def _anneal(graph: OptionGraph, make: Pass, taste: Taste, best: Selection, round
     cost = best_cost = selection_cost(graph, best)
     for turn in range(rounds):
         changed = _change(graph, taste, nodes, roots, random)
-        selection = make.select(changed)
+        selection = make.select(changed, falling=make.falling)
         if selection is None:
             continue
         new = selection_cost(graph, selection)

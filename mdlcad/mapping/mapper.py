@@ -30,10 +30,12 @@ class Effort:
     Attributes:
         masses_made: by all passes of the first, annealing search.
         deterministic_time: of CP-SAT in the second, exact search; none if 0.
+        options: most ways to make masses for which the exact search is tried; it finds nothing in larger graphs.
     """
 
     masses_made: int = 150_000
     deterministic_time: float = 1.0
+    options: int = 40_000
 
 
 def map_netlist(netlist: Netlist, library: Library, effort: Effort = Effort()) -> Network:
@@ -90,7 +92,7 @@ def _make_plan(netlist: Netlist, library: Library, subject: Subject, nets: dict[
     ]
     graph = OptionGraph(subject, candidates, choices, outputs, library.gates)
     start = search(graph, plain_taste(graph, [item.following for item in wanted]), effort.masses_made, _SEED)
-    if not effort.deterministic_time:
+    if not effort.deterministic_time or graph.size > effort.options:
         return make_plan(graph, start)
     found = best_cover(graph, start, effort.deterministic_time, _SEED)
     # the exact search knows nothing of twins

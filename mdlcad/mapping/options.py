@@ -93,6 +93,11 @@ class OptionGraph:
         while self._pending:
             self._add_logic(self._pending.pop())
 
+    @property
+    def size(self) -> int:
+        """Number of options."""
+        return sum(len(options) for options in self.options.values())
+
     def signal(self, node: int, phase: int) -> Key:
         """The mass that carries ``node`` in ``phase``."""
         register = self._register_of.get(node)

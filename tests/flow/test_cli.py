@@ -76,7 +76,15 @@ def test_build_stops_after_the_network_when_told(tmp_path, capsys):
 
 
 @pytest.mark.parametrize(
-    "command", [["cells"], ["processes"], ["schema"], ["cells", "parametron"], ["processes", "pom_cut"]]
+    "command",
+    [
+        ["cells"],
+        ["processes"],
+        ["schema"],
+        ["cells", "parametron"],
+        ["cells", "two_phase", "--liberty"],
+        ["processes", "pom_cut"],
+    ],
 )
 def test_listings(command, capsys):
     assert main(command) == HOLDS

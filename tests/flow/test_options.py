@@ -64,7 +64,10 @@ def test_the_default_library_is_written_down_too(tmp_path):
         (["--to", "network", "--no-io-gates"], "--no-io-gates: the cell library parametron has no such option"),
         ([*PAPERS, "--parameters", "gentle"], "no parameter set 'gentle'; there are literal, near, robust"),
         ([*PAPERS, "--clock-length", "1"], "make it 2 or more"),
-        ([*PAPERS, "--clock-length", "7"], "a clock of 7 cycles is too short for this device: make it at least"),
+        (
+            [*PAPERS, "--clock-length", "7"],
+            "a clock of 7 cycles is too short for this device: with --clock-length, make it at least",
+        ),
         ([*PAPERS, "--buffer", "COPY"], "options.buffer is 'COPY', but the cells are NOR"),
         ([*PAPERS, "--buffer", "NOT"], "cell 'NOT' is not a buffer"),
         (["--cells", "two_phase"], "for which there are no parts yet"),

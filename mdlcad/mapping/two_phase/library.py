@@ -95,7 +95,7 @@ class TwoPhaseLibrary:
     """One library with one of its parameter sets. All quantities are dimensionless.
 
     Attributes:
-        parameters: name of the parameter set in use.
+        parameters: name of the parameter set in use, one of ``parameter_sets``.
         fan_out: most inputs that one output may drive.
         cells: in the order of the file.
     """
@@ -103,6 +103,7 @@ class TwoPhaseLibrary:
     name: str
     title: str
     parameters: str
+    parameter_sets: tuple[str, ...]
     options: Options
     dynamics: Dynamics
     fan_out: int

@@ -130,6 +130,7 @@ def _library(data: LibraryData, request: MappingRequest) -> TwoPhaseLibrary:
         name=data.name,
         title=data.title,
         parameters=chosen,
+        parameter_sets=tuple(data.sets),
         options=_options(data.options, request),
         dynamics=dynamics,
         fan_out=data.gates.fan_out,

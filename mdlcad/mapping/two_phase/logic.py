@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 
+from mdlcad.errors import UsageError
 from mdlcad.mapping.two_phase.liberty import liberty
 from mdlcad.mapping.two_phase.library import COPY_TABLE, NOT_TABLE, TwoPhaseLibrary
 from mdlcad.mapping.two_phase.trees import TreePlanner
@@ -27,11 +28,12 @@ _RESUB = (
     "balance;"
 )
 # Collapsing starts afresh from the outputs' functions; where they are too large for that it fails, and is passed over.
+# Bounds are in nodes and cubes, not in time, so that the same versions are made everywhere.
 _SCRIPTS = (
     "dc2; dc2;",
     _RESUB,
     "collapse -B 20000; muxes; strash; dc2;",
-    f"collapse -B 20000; sop; fx; strash; {_REWRITE}",
+    f"collapse -B 20000; sop -C 500; fx; strash; {_REWRITE}",
     "collapse -B 20000; bdd; strash; dc2;",
 )
 _COVERS = {
@@ -80,7 +82,11 @@ class Logic:
 
 
 def lower(netlist: Netlist, library: TwoPhaseLibrary) -> Logic:
-    """Gates of ``library`` for the logic of ``netlist``; of several versions the one with the fewest masses."""
+    """Gates of ``library`` for the logic of ``netlist``; of several versions the one with the fewest masses.
+
+    Raises:
+        UsageError: ABC could not map it.
+    """
     text, nets = _blif(netlist)
     planner = TreePlanner(library.fan_out if library.options.branching else None)
     versions = []
@@ -92,7 +98,7 @@ def lower(netlist: Netlist, library: TwoPhaseLibrary) -> Logic:
             for mapped in _run_abc(folder, script):
                 versions.append(_read(mapped, nets, netlist, library))
     if not versions:
-        raise ValueError("ABC made nothing of the netlist")
+        raise UsageError("logic synthesis made nothing of the behaviour for this cell library; make its logic smaller")
     return min(versions, key=lambda logic: _masses(logic, netlist, library, planner))
 
 
@@ -153,13 +159,16 @@ def _run_abc(folder: Path, script: str) -> list[str]:
         "map -a; topo; write_blif plain.blif;"
         "read_blif start.blif; strash; dch; dch; map -a; topo; write_blif choices.blif"
     )
-    subprocess.run(
-        [str(Path(spec.submodule_search_locations[0]) / "yosys-abc"), "-q", commands],
-        cwd=folder,
-        capture_output=True,
-        timeout=_TIMEOUT_SECONDS,
-        check=False,
-    )
+    try:
+        subprocess.run(
+            [str(Path(spec.submodule_search_locations[0]) / "yosys-abc"), "-q", commands],
+            cwd=folder,
+            capture_output=True,
+            timeout=_TIMEOUT_SECONDS,
+            check=False,
+        )
+    except subprocess.TimeoutExpired:
+        return []
     return [output.read_text(encoding="ascii") for output in outputs if output.exists()]
 
 

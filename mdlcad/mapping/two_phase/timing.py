@@ -96,5 +96,8 @@ def schedule(ways: Ways, clock_length: int) -> Schedule:
     round_trip = max(way - s for way, s in zip(ways.latches_to_data, ways.skew, strict=True))
     needed = max(earliest + after + 1, round_trip, _SETTLED + ways.sensors_to_outputs + 1)
     if clock_length < needed:
-        raise UsageError(f"a clock of {clock_length} cycles is too short for this device: make it at least {needed}")
+        raise UsageError(
+            f"a clock of {clock_length} cycles is too short for this device: with --clock-length, make it at least "
+            f"{needed}"
+        )
     return Schedule(clock_length, (earliest + clock_length - 1 - after) // 2)
