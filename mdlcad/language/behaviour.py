@@ -91,8 +91,6 @@ def _refusal(lexeme: Lexeme) -> tuple[str, str] | None:
             return "a '`' without a word", "write the directive or macro right behind it"
         case LexemeKind.DIRECTIVE if lexeme.text.startswith("``"):
             return "'``' would join two words", "write the joined word itself"
-        case LexemeKind.WORD if lexeme.text == "import":
-            return "'import' would run code from outside the program", "write the function in Verilog"
         case LexemeKind.ESCAPED if any(char in lexeme.text for char in '$`"/'):
             return f"the escaped name '{name}' holds one of $ ` \" /", "use letters, digits and '_'"
         case LexemeKind.OPEN_TEXT:

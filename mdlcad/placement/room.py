@@ -10,8 +10,7 @@ from shapely import Polygon
 
 from mdlcad.mechanics.rules import LayoutRules
 from mdlcad.network.model import Network
-from mdlcad.placement.grid import clearance
-from mdlcad.placement.lattice import lattices, place_ports
+from mdlcad.placement.grid import clearance, free_intervals, inside
 from mdlcad.placement.ports import PortPlace
 
 SEARCH = 1.06
@@ -48,9 +47,7 @@ def lack_of_room(
     Args:
         boundary: vertices on the grid, clockwise. ports: places in grid units. units: slots that are needed.
     """
-    return _crowded(network, ports, rules, largest_scale) or _thin(
-        network, boundary, ports, rules, units, largest_scale
-    )
+    return _crowded(network, ports, rules, largest_scale) or _thin(network, boundary, rules, units, largest_scale)
 
 
 def _crowded(network: Network, ports: tuple[PortPlace, ...], rules: LayoutRules, largest_scale: float) -> Lack | None:
@@ -80,19 +77,18 @@ def _crowded(network: Network, ports: tuple[PortPlace, ...], rules: LayoutRules,
 def _thin(
     network: Network,
     boundary: tuple[tuple[int, int], ...],
-    ports: tuple[PortPlace, ...],
     rules: LayoutRules,
     units: int,
     largest_scale: float,
 ) -> Lack | None:
-    if _fits(network, boundary, ports, rules, units, largest_scale):
+    if _fits(boundary, rules, units, largest_scale):
         return None
     x_low, y_low, x_high, y_high = Polygon(boundary).bounds
     wide, tall = x_high - x_low, y_high - y_low
     scale = largest_scale
-    while scale * max(wide, tall) <= LARGEST_MM and not _fits(network, boundary, ports, rules, units, scale):
+    while scale * max(wide, tall) <= LARGEST_MM and not _fits(boundary, rules, units, scale):
         scale *= SEARCH
-    if _fits(network, boundary, ports, rules, units, scale):
+    if _fits(boundary, rules, units, scale):
         enough = f"only at {scale * wide:.0f} x {scale * tall:.0f} mm would it have room"
     else:
         enough = f"not even at {scale * wide:.0f} x {scale * tall:.0f} mm would it have room"
@@ -106,13 +102,23 @@ def _thin(
     )
 
 
-def _fits(
-    network: Network,
-    boundary: tuple[tuple[int, int], ...],
-    ports: tuple[PortPlace, ...],
-    rules: LayoutRules,
-    units: int,
-    scale: float,
-) -> bool:
-    scale = round(scale, 4)
-    return bool(lattices(boundary, place_ports(network, ports, scale), rules, scale, units))
+def _fits(boundary: tuple[tuple[int, int], ...], rules: LayoutRules, units: int, scale: float) -> bool:
+    """Whether rows packed without regard to columns would hold ``units``: no lattice holds more."""
+    inner = inside(tuple((x * scale, y * scale) for x, y in boundary), rules)
+    if inner.is_empty:
+        return False
+    _, y_low, _, y_high = inner.bounds
+    rows = int((y_high - y_low) / rules.row_pitch + 1e-9)
+    spare = (y_high - y_low) - rows * rules.row_pitch
+    width = rules.unit_left + rules.unit_right
+    return any(
+        sum(
+            int((high - low) / width + 1e-9)
+            for row in range(rows)
+            for low, high in free_intervals(
+                inner, y_low + offset + row * rules.row_pitch, y_low + offset + (row + 1) * rules.row_pitch
+            )
+        )
+        >= units
+        for offset in (0.0, spare / 2, spare)
+    )

@@ -90,7 +90,7 @@ def find_lack(
 ) -> Lack | None:
     """What no scale that ``place_and_route`` would try has room for, or None."""
     largest = least_scale(network, boundary, rules) * STEP ** (MOST_STEPS - 1)
-    return lack_of_room(network, boundary, ports, rules, math.ceil(SLACK * len(network.masses)), largest)
+    return lack_of_room(network, boundary, ports, rules, len(network.masses), largest)
 
 
 class _Search:

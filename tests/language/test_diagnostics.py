@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 
 import pytest
 
-from mdlcad.errors import InputError
-from mdlcad.language import parse_device
+from mdlcad.errors import Diagnostic, InputError
+from mdlcad.language import anchored, parse_device
+from mdlcad.language.unbuildable import UNBUILDABLE
 from tests.language.good import GOOD
 
 BOUNDARY = GOOD[GOOD.index("boundary") : GOOD.index("sensor")]
@@ -355,3 +357,30 @@ def test_excerpt_and_hint() -> None:
 def test_words_of_fields_may_be_names(word: str) -> None:
     device = parse_device(GOOD.replace("line a", f"line {word}").replace("(a,", f"({word},"), "x.mdl")
     assert device.boundary[0].name == word
+
+
+@pytest.mark.parametrize("word", sorted(UNBUILDABLE))
+def test_words_for_what_no_device_can_do_are_refused_with_the_mend(word: str) -> None:
+    wrong, mend = UNBUILDABLE[word]
+    text = with_verilog(f"{word} w;")
+    assert findings(text) == [f"11:3 '{word}' {wrong}"]
+    assert mend
+    parse_device(with_verilog(f"wire a_{word}; // {word}"), "x.mdl")
+
+
+def test_a_package_before_the_first_module_belongs_to_the_verilog() -> None:
+    package = "package p; localparam N = 1; endpackage\n"
+    device = parse_device(GOOD.replace("module v(input clk", package + "module v import p::*; (input clk"), "x.mdl")
+    assert package in device.verilog
+    # and yet the word may name a line or a port
+    assert parse_device(GOOD.replace("sensor s", "sensor package").replace("input s", "input package"), "x.mdl")
+
+
+def test_findings_of_later_stages_get_the_path_and_the_line_of_the_file(tmp_path: Path) -> None:
+    path = tmp_path / "x.mdl"
+    path.write_text(GOOD.replace("sensor s", "\tsensor s"))
+    late = InputError([Diagnostic("x.mdl", 8, 9, "wrong", "mend it"), Diagnostic("y.mdl", 1, 1, "other")])
+    first, second = anchored(late, path).diagnostics
+    assert str(first).split("\n")[0] == f"{path}:8:9: error: wrong; mend it"
+    assert first.excerpt.startswith(" sensor s {")
+    assert second == late.diagnostics[1]

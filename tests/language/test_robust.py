@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import contextlib
 import random
+import re
 import time
 from pathlib import Path
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from mdlcad.artefact import from_json, to_json
 from mdlcad.errors import InputError
 from mdlcad.language import Device, parse_device, read_device
 from mdlcad.language.source import LIMIT_BYTES
+from mdlcad.synthesis import synthesise
 from tests.language.good import GOOD
 
 PIECES = [
@@ -128,3 +130,59 @@ def test_a_boundary_of_many_lines_ends_soon() -> None:
     with contextlib.suppress(InputError):
         parse_device(text.replace("(a,", "(l0,").replace("(c,", "(l1,"), "x.mdl")
     assert time.process_time() - started < 5
+
+
+EXAMPLES = [path.read_text(encoding="utf-8") for path in sorted((Path(__file__).parents[2] / "examples").glob("*.mdl"))]
+# words with the space before them, so that put together they are the program again
+WORDS = [re.findall(r"\s*(?:\w+|[^\w\s])", text) for text in (*EXAMPLES, GOOD)]
+VERILOG = [
+    " always @(posedge clk)", " assign", "<=", " begin", " end", " 1'bz", " 4'b1x0?", " reg", " logic", "[3:0]", " case", " for",
+    "**", "/", " negedge", " initial", " #5", "@*", " typedef enum", " package", " clk", " input", " output", " struct", "'0",
+    " 99999999999", "'", " function", " generate", " while",
+]  # fmt: skip
+
+
+@st.composite
+def mutated(draw: st.DrawFn) -> str:
+    """An example with up to four words dropped, doubled, swapped, replaced, or borrowed from another example."""
+    words = list(draw(st.sampled_from(WORDS)))
+    for _ in range(draw(st.integers(1, 4))):
+        at, other = draw(st.integers(0, len(words) - 1)), draw(st.integers(0, len(words) - 1))
+        match draw(st.integers(0, 4)):
+            case 0:
+                words[at] = ""
+            case 1:
+                words[at] += words[other]
+            case 2:
+                words[at], words[other] = words[other], words[at]
+            case 3:
+                words[at] = draw(st.sampled_from([*PIECES, *VERILOG]))
+            case _:
+                lender = draw(st.sampled_from(WORDS))
+                start = draw(st.integers(0, len(lender) - 1))
+                words[at:at] = lender[start : start + draw(st.integers(1, 12))]
+    return "".join(words)
+
+
+@settings(max_examples=200, deadline=None)
+@given(mutated())
+def test_examples_with_mistakes(text: str) -> None:
+    parse_or_refuse(text)
+
+
+def synthesise_or_refuse(text: str) -> None:
+    try:
+        device = parse_device(text, "x.mdl")
+        synthesise(device)
+    except InputError as error:
+        for finding in error.diagnostics:
+            assert finding.hint
+            assert finding.line <= text.count("\n") + 1
+            assert not re.search(r"/tmp|program\.v|[Yy]osys|slang|\$proc|\$driver|'\?'", str(finding)), str(finding)
+
+
+@pytest.mark.long
+@settings(max_examples=600, deadline=None, suppress_health_check=list(HealthCheck))
+@given(mutated())
+def test_examples_with_mistakes_through_the_synthesis(text: str) -> None:
+    synthesise_or_refuse(text)
