@@ -136,9 +136,9 @@ EXAMPLES = [path.read_text(encoding="utf-8") for path in sorted((Path(__file__).
 # words with the space before them, so that put together they are the program again
 WORDS = [re.findall(r"\s*(?:\w+|[^\w\s])", text) for text in (*EXAMPLES, GOOD)]
 VERILOG = [
-    " always @(posedge clk)", " assign", "<=", " begin", " end", " 1'bz", " 4'b1x0?", " reg", " logic", "[3:0]", " case", " for",
-    "**", "/", " negedge", " initial", " #5", "@*", " typedef enum", " package", " clk", " input", " output", " struct", "'0",
-    " 99999999999", "'", " function", " generate", " while",
+    " always @(posedge clk)", " assign", "<=", " begin", " end", " 1'bz", " 4'b1x0?", " reg", " logic", "[3:0]",
+    "**", "/", " negedge", " initial", " #5", "@*", " typedef enum", " package", " clk", " input", " output",
+    " case", " struct", "'0", " for", " 99999999999", "'", " function", " generate", " while",
 ]  # fmt: skip
 
 
