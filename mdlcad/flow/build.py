@@ -13,7 +13,7 @@ from mdlcad.artefact import checksum, load, to_json, write_atomic
 from mdlcad.errors import InputError, SignoffError, UsageError
 from mdlcad.flow.folder import REPORT, new_folder
 from mdlcad.flow.plans import steps_with
-from mdlcad.flow.result import failures, make_report
+from mdlcad.flow.result import make_report
 from mdlcad.flow.state import Job, State
 from mdlcad.flow.steps import STEPS, Step
 from mdlcad.language import Device, anchored
@@ -22,7 +22,8 @@ from mdlcad.mechanics import Sizing, load_process
 from mdlcad.network.model import Network
 from mdlcad.placement.placement import Placement
 from mdlcad.proof.outcome import Proof
-from mdlcad.report.report import StageRecord
+from mdlcad.report.page import write_page
+from mdlcad.report.report import StageRecord, Stopped
 from mdlcad.routing.layout import Layout
 from mdlcad.synthesis.netlist import Netlist
 
@@ -60,9 +61,10 @@ class Request:
 def build(request: Request, say: Callable[[str], None]) -> tuple[Path, list[str]]:
     """Build into a folder; the folder, and what does not hold in it, in words (empty: all holds).
 
+    A build whose network or layout does not hold ends there; the folder keeps what was made, and its report says why.
+
     Raises:
         InputError, UsageError: the program or the request cannot be used; nothing was written.
-        SignoffError: a stage does not hold and nothing worth keeping was made; nothing was written.
     """
     _chosen(STEPS, request.first, request.last)
     library, process = _library(request), load_process(request.process)
@@ -80,6 +82,7 @@ def build(request: Request, say: Callable[[str], None]) -> tuple[Path, list[str]
     else:
         place = request.place or Path("exports") / _design_name(request.source)
     records: list[StageRecord] = []
+    stopped: Stopped | None = None
     with new_folder(place) as folder:
         job = Job(source, library, process, request.seed, folder, request.workers)
         # what the build leans on goes with it, so that it can be signed off again elsewhere
@@ -91,12 +94,26 @@ def build(request: Request, say: Callable[[str], None]) -> tuple[Path, list[str]
                 write_atomic(folder / f"{step.name}.json", data)
                 records.append(StageRecord(step.name, 0.0, checksum(data)))
             step.draw(job, state)
+            stopped = stopped or _objection(step, state)
         for step in steps:
-            state, record = _run(step, job, state, say)
+            if stopped is not None:
+                break
+            try:
+                state, record = _run(step, job, state, say)
+            except SignoffError as problem:
+                stopped = Stopped(step.name, str(problem))
+                break
             records.append(record)
-        report = make_report(state, job, tuple(records), __version__)
+            stopped = _objection(step, state)
+        report = make_report(state, job, tuple(records), stopped, __version__)
         write_atomic(folder / REPORT, to_json(report))
-    return place, failures(state)
+        write_page(folder)
+    return place, list(report.failures)
+
+
+def _objection(step: Step, state: State) -> Stopped | None:
+    reason = step.objection(state)
+    return None if reason is None else Stopped(step.name, reason)
 
 
 def _design_name(source: Path) -> str:
@@ -155,8 +172,6 @@ def _run(step: Step, job: Job, state: State, say: Callable[[str], None]) -> tupl
         state = step.run(job, state, progress)
     except InputError as problem:
         raise (problem if job.source is None else anchored(problem, job.source)) from None
-    except SignoffError as problem:
-        raise SignoffError(f"{step.name}: {problem}") from problem
     finally:
         if sys.stderr.isatty():
             sys.stderr.write("\r\033[K")

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from mdlcad.flow.state import Job, State
+from mdlcad.parts.bom import bill_of_materials
 from mdlcad.parts.plates import plates_of
 from mdlcad.report.make import behaviour_of, extent_of, hashes_of, mechanics_of
-from mdlcad.report.report import Lvs, Report, StageRecord
+from mdlcad.report.report import Lvs, Report, StageRecord, Stopped
 
 
-def make_report(state: State, job: Job, records: tuple[StageRecord, ...], version: str) -> Report:
+def make_report(
+    state: State, job: Job, records: tuple[StageRecord, ...], stopped: Stopped | None, version: str
+) -> Report:
     """The report of what has been made so far in ``job.folder``."""
     network, bodies = state.network, state.bodies
     return Report(
@@ -31,14 +34,17 @@ def make_report(state: State, job: Job, records: tuple[StageRecord, ...], versio
         extent_mm=extent_of(bodies) if bodies else None,
         plates=tuple(plates_of(bodies)) if bodies else (),
         tiles=len(plates_of(bodies)) if bodies else None,
+        bom=bill_of_materials(bodies, job.process) if bodies else None,
         stages=records,
+        stopped=stopped,
+        failures=tuple(failures(state, stopped)),
         files=hashes_of(job.folder),
     )
 
 
-def failures(state: State) -> list[str]:
-    """What does not hold in a build that got as far as its drawings, in words; empty if all holds."""
-    found = []
+def failures(state: State, stopped: Stopped | None) -> list[str]:
+    """What does not hold in a build, in words; empty if all that was checked holds."""
+    found = [] if stopped is None else [f"{stopped.stage}: {stopped.reason}"]
     if state.rules is not None:
         for item in state.rules.errors[:20]:
             found.append(f"{item.rule} at ({item.x:.2f}, {item.y:.2f}): {', '.join(item.bodies)}: {item.message}")

@@ -45,6 +45,7 @@ class Step:
         summary: one line about what came out.
         artefact: the bytes of what it made, kept as NAME.json; None if it made files of its own.
         draw: writes pictures of that artefact beside it, whether it was made or taken from a folder.
+        objection: why nothing can be made of what it made, in words with numbers; None if it may go on.
     """
 
     name: str
@@ -54,6 +55,7 @@ class Step:
     summary: Callable[[State], str]
     artefact: Callable[[State], bytes] | None
     draw: Callable[[Job, State], None] = lambda job, state: None
+    objection: Callable[[State], str | None] = lambda state: None
 
 
 Progress = Callable[[str], None]
@@ -75,10 +77,15 @@ def _map(job: Job, state: State, progress: Progress) -> State:
 
 def _prove(job: Job, state: State, progress: Progress) -> State:
     proof = prove(need(state.network), build_reference(need(state.device)), seed=job.seed, workers=job.workers)
-    if not proof.holds:
-        words = "; ".join(str(item) for item in proof.first_mismatches[:3]) or "nothing was checked"
-        raise SignoffError(f"the network does not behave as the program says: {words}")
     return replace(state, proof=proof)
+
+
+def _refuted(state: State) -> str | None:
+    proof = need(state.proof)
+    if proof.holds:
+        return None
+    words = "; ".join(str(item) for item in proof.first_mismatches[:3]) or "nothing was checked"
+    return f"the network does not behave as the program says: {words}"
 
 
 def _size(job: Job, state: State, progress: Progress) -> State:
@@ -109,14 +116,6 @@ def _place_and_route(job: Job, state: State, progress: Progress) -> State:
         progress,
     )
     return replace(state, placement=placement, layout=layout)
-
-
-def _draw_layout(job: Job, state: State, progress: Progress) -> State:
-    picture = draw_layout(need(state.network), need(state.placement), need(state.layout), need(state.sizing).rules)
-    views = job.folder / "views"
-    views.mkdir(exist_ok=True)
-    write_atomic(views / "layout.svg", picture)
-    return state
 
 
 def _build_parts(job: Job, state: State, progress: Progress) -> State:
@@ -174,7 +173,6 @@ def _lvs(job: Job, state: State, progress: Progress) -> State:
 def _picture(job: Job, state: State, progress: Progress) -> State:
     from mdlcad.view.views import write_views  # VTK takes seconds to load
 
-    _draw_layout(job, state, progress)  # once more: a build that began after the layout has no drawing yet
     return replace(state, files=state.files + write_views(need(state.bodies), job.folder, progress))
 
 
@@ -183,6 +181,13 @@ def draw_placement(job: Job, state: State) -> None:
     from mdlcad.view.placement import write_placement_views  # the plotting library takes a second to load
 
     write_placement_views(need(state.network), job.folder)
+
+
+def _draw_layout(job: Job, state: State) -> None:
+    picture = draw_layout(need(state.network), need(state.placement), need(state.layout), need(state.sizing).rules)
+    views = job.folder / "views"
+    views.mkdir(exist_ok=True)
+    write_atomic(views / "layout.svg", picture)
 
 
 def place_of(device: Device, bit: str) -> Where:
@@ -252,7 +257,15 @@ STEPS: tuple[Step, ...] = (
         ),
         lambda s: to_json(s.network),
     ),
-    Step("proof", ("device", "network"), ("proof",), _prove, _behaviour_words, lambda s: to_json(s.proof)),
+    Step(
+        "proof",
+        ("device", "network"),
+        ("proof",),
+        _prove,
+        _behaviour_words,
+        lambda s: to_json(s.proof),
+        objection=_refuted,
+    ),
     Step(
         "sizing",
         ("network", "proof"),
@@ -274,12 +287,13 @@ STEPS: tuple[Step, ...] = (
         "layout",
         ("network", "placement", "layout", "sizing"),
         (),
-        _draw_layout,
+        lambda job, state, progress: state,
         lambda s: (
             f"{len(need(s.layout).rungs)} rungs, {len(need(s.layout).trunks)} trunks, "
             f"{len(need(s.layout).couplers)} couplers"
         ),
         lambda s: to_json(s.layout),
+        _draw_layout,
     ),
     Step(
         "parts",

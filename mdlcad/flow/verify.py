@@ -55,6 +55,8 @@ def verify(folder: Path, workers: int, say: Callable[[str], None]) -> list[str]:
 
 
 def _verify(folder: Path, report: Report, workers: int, say: Callable[[str], None]) -> list[str]:
+    if report.stopped is not None:
+        raise UsageError(f"{folder}: its build ended at {report.stopped.stage}: {report.stopped.reason}")
     if report.extracted is None:
         raise UsageError(f"{folder}: was stopped before its sign-off (--to); build it whole to verify it")
     broken: list[str] = []

@@ -12,6 +12,9 @@ from mdlcad.parts.stiffness import CarrierStiffness
 from mdlcad.proof.outcome import Proof
 from mdlcad.report.report import Behaviour, Mechanics
 
+PAGE = "report.html"
+"""The report for people. It shows how long the stages took, so it has no hash among the files, like report.json."""
+
 
 def behaviour_of(proof: Proof | None) -> Behaviour | None:
     """The figures of a proof that the report shows."""
@@ -50,9 +53,9 @@ def extent_of(bodies: Sequence[Body]) -> tuple[float, float, float]:
 
 
 def hashes_of(folder: Path) -> dict[str, str]:
-    """SHA-256 of every file of a build folder but the report itself, by path relative to the folder, sorted."""
+    """SHA-256 of every file of a build folder but its reports, by path relative to the folder, sorted."""
     return {
         path.relative_to(folder).as_posix(): checksum(path.read_bytes())
         for path in sorted(folder.rglob("*"))
-        if path.is_file() and path != folder / "report.json"
+        if path.is_file() and path not in (folder / "report.json", folder / PAGE)
     }

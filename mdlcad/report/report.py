@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from mdlcad.mechanics.drive import DriveLoads
+from mdlcad.parts.bom import Bom
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,10 +58,24 @@ class StageRecord:
 
 
 @dataclass(frozen=True, slots=True)
+class Stopped:
+    """Where a build ended because what a stage made does not hold, and why, in words."""
+
+    stage: str
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
 class Report:
-    """The machine's copy of the build's result. None: the build was stopped (``--to``) before that was known.
+    """The machine's copy of the build's result. None: the build ended before that was known.
 
     All of it but the seconds of the stages is the same for the same input, seed and version.
+
+    Attributes:
+        stages: those that ended well, in order.
+        stopped: None if all stages that were asked for (``--to``) ran.
+        failures: what does not hold, in words with numbers; empty if all that was checked holds.
+        files: SHA-256 by path, of every file but report.json itself and report.html, which is made from it.
     """
 
     design: str
@@ -84,3 +99,7 @@ class Report:
     tiles: int | None
     stages: tuple[StageRecord, ...]
     files: dict[str, str]
+    # later than the first reports, which can still be read
+    stopped: Stopped | None = None
+    failures: tuple[str, ...] = ()
+    bom: Bom | None = None

@@ -57,7 +57,7 @@ def test_every_promised_file_is_there_and_hashed(built):
     wanted += [f"views/plate-{plate}.png" for plate in PLATES if plate != "shims"]
     assert set(wanted) <= set(files)
     on_disk = {path.relative_to(built).as_posix() for path in built.rglob("*") if path.is_file()}
-    assert on_disk == set(files) | {"report.json"}
+    assert on_disk == set(files) | {"report.json", "report.html"}
 
 
 def test_verify_signs_the_untouched_build_off(built, capsys):

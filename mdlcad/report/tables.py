@@ -1,0 +1,228 @@
+"""The rows of the report page's tables: from artefacts to words and numbers with units."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from mdlcad.language import Actuator, Device, Sensor
+from mdlcad.mechanics import Process, Sizing
+from mdlcad.mechanics.leaves import LeafSize
+from mdlcad.mechanics.process import PlateRole
+from mdlcad.network.model import Network
+from mdlcad.parts.bom import Bom, Profile
+from mdlcad.proof.outcome import Proof
+from mdlcad.report.report import Report
+from mdlcad.signoff.drc import Finding
+from mdlcad.signoff.summary import DesignRules
+
+# What a rule of the design rules asks, and the unit of its value. A rule that is not here is shown by its name alone.
+_RULES = {
+    "overlap": ("no two bodies share volume as assembled", "mm²"),
+    "swept_clearance": ("what moves by itself keeps the gap to all else, at the worst of both motions", "mm"),
+    "containment": ("nothing but tabs reaches outside the boundary", "mm²"),
+    "min_wall": ("no wall is thinner than the machine makes", "mm"),
+    "min_gap": ("no gap is narrower than the machine makes", "mm"),
+    "bed": ("every piece fits the machine's bed", "mm"),
+    "unrealised_coupling": ("every coupling of the network has its part", ""),
+    "carrier_stiffness": ("a carrier is stiff enough for the couplers it drives", "times"),
+    "strain": ("no flexure is strained beyond its limit in repeated use", ""),
+    "strain_peak": ("no flexure is strained beyond its limit at rare peaks", ""),
+    "slope": ("no leg of a flexure turns too far", "rad"),
+    "clearance": ("neighbouring legs of a flexure stay apart", "mm"),
+    "quartic": ("no coupler stiffens too much at its extremes", ""),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class RuleRow:
+    """A design rule: what it asks, how often it is missed, the worst miss in words, and whether that fails a build."""
+
+    rule: str
+    asks: str
+    count: int
+    worst: str
+    verdict: str
+
+
+@dataclass(frozen=True, slots=True)
+class Margin:
+    """How far a figure stands from its limit; ``holds`` is None where no limit is set."""
+
+    name: str
+    value: str
+    limit: str
+    about: str
+    holds: bool | None
+
+
+@dataclass(frozen=True, slots=True)
+class PortRow:
+    """A port, the places it stands at, and what its values are called."""
+
+    name: str
+    kind: str
+    places: str
+    values: str
+
+
+@dataclass(frozen=True, slots=True)
+class SizeRow:
+    """A dimension or stiffness with its unit."""
+
+    name: str
+    value: str
+    about: str
+
+
+@dataclass(frozen=True, slots=True)
+class FlexureRow:
+    """Flexures that are alike."""
+
+    kind: str
+    nominal: str
+    count: int
+    wall_mm: float
+    legs: int
+    reach_mm: float
+    stiffness: float
+    strain_percent: float
+
+
+def rule_rows(rules: DesignRules) -> list[RuleRow]:
+    """One row a rule, those that are missed first."""
+    rows = []
+    for rule, count in rules.counts.items():
+        found = [item for item in rules.findings if item.rule == rule]
+        asks, unit = _RULES.get(rule, (rule.replace("_", " "), ""))
+        verdict = "holds" if count == 0 else "warning" if rule in rules.warned else "fails"
+        rows.append(RuleRow(rule, asks, count, _worst(found, unit), verdict))
+    order = {"fails": 0, "warning": 1, "holds": 2}
+    return sorted(rows, key=lambda row: (order[row.verdict], row.rule))
+
+
+def _worst(found: Sequence[Finding], unit: str) -> str:
+    if not found:
+        return ""
+    worst = max(found, key=lambda item: (abs(item.value - item.limit), item.bodies))
+    who = ", ".join(worst.bodies)
+    if worst.value == worst.limit:
+        return f"{who}: {worst.message}"
+    return f"{worst.value:.4g} {unit}".rstrip() + f" (limit {worst.limit:.4g}): {who}"
+
+
+def margin_rows(
+    report: Report, process: Process | None, sizing: Sizing | None, proofs: Sequence[tuple[str, Proof]]
+) -> list[Margin]:
+    """Signal, strain and stiffness against their limits."""
+    rows = [
+        Margin(
+            f"read-out, {name}",
+            f"{proof.margin:.2f}",
+            "",
+            f"smallest |x| of any mass at a read-out: {proof.margin_mass or 'none was read'}; 0 would be undecided",
+            None,
+        )
+        for name, proof in proofs
+    ]
+    mechanics = report.mechanics
+    if mechanics is None or process is None or sizing is None:
+        return rows
+    material = process.material(process.plates(PlateRole.UNIT)[0])
+    # the worst of all flexures stands beside the smallest limit of their sheets
+    limit = min([material.strain_limit, process.material(process.plates(PlateRole.RUNG)[0]).strain_limit])
+    worst = mechanics.strain_worst
+    about = "largest in units, couplers and bias leaves over the motion seen in simulation"
+    rows.append(Margin("strain", f"{100 * worst:.2f} %", f"at most {100 * limit:.2f} %", about, worst <= limit))
+    ratio = mechanics.carrier_stiffness_ratio_worst
+    if ratio is not None:
+        least = process.link.carrier_ratio
+        about = "the softest carrier over the coupler that it drives"
+        rows.append(Margin("carrier", f"{ratio:.1f} times", f"at least {least:g} times", about, ratio >= least))
+    about = (
+        "largest change, in units of k, that the parts as built make to a unit's compensation; it is in the preloads"
+    )
+    rows.append(Margin("compensation", f"{mechanics.compensation_difference_worst:.2f}", "", about, None))
+    return rows
+
+
+def port_rows(device: Device) -> list[PortRow]:
+    """Sensors first."""
+    ports: list[tuple[Sensor | Actuator, str]] = [(port, "sensor") for port in device.sensors]
+    ports += [(port, "actuator") for port in device.actuators]
+    return [
+        PortRow(
+            name=port.name,
+            kind=kind,
+            places=", ".join(f"{place.line} at {place.position:g}" for place in port.places),
+            values=", ".join(f"{value.bits} {value.label}" for value in port.values),
+        )
+        for port, kind in ports
+    ]
+
+
+def size_rows(sizing: Sizing, process: Process) -> list[SizeRow]:
+    """The dimensions that units have in common."""
+    rules, law, unit, series = sizing.rules, sizing.law, process.unit, sizing.series
+    preloads = [item.preload for item in sizing.units]
+    return [
+        SizeRow("unit", f"{rules.unit_left + rules.unit_right:.1f} × {rules.row_pitch:.2f} mm", "its slot in x and y"),
+        SizeRow("beams", f"{unit.span:g} × {unit.beam_wall:g} mm", f"span and wall; {unit.beams} a side"),
+        SizeRow("throw", f"±{rules.throw:.2f} mm", "of shuttles and carriers in y"),
+        SizeRow("clock plates", f"±{rules.clock_throw:.2f} mm", "in x"),
+        SizeRow("S0", f"{law.stiffness_unit:.3f} N/mm", "stiffness of 1 in the network"),
+        SizeRow("F0", f"{law.force_unit:.3f} N", "force of 1 in the network"),
+        SizeRow("series springs", f"{series.length:.2f} × {series.wall:.2f} mm", f"{series.leaves} leaves a bank"),
+        SizeRow("preload", f"{min(preloads):.2f} to {max(preloads):.2f} mm", "of clock blocks, least to most"),
+        SizeRow("pins", f"{rules.pin:g} mm square", ""),
+        SizeRow("posts", f"{2 * rules.post_radius:g} mm round", ""),
+        SizeRow("gap", f"{rules.gap:.2f} mm", "between what moves independently"),
+        SizeRow("rim", f"{rules.frame_width:g} mm", "along the boundary"),
+    ]
+
+
+def flexure_rows(sizing: Sizing) -> list[FlexureRow]:
+    """Couplers, rockers and bias leaves, those of one size together."""
+    leaves: list[tuple[str, str, LeafSize]] = []
+    for coupler in sizing.couplers:
+        leaves.append((coupler.leaf.kind.value, f"c = {coupler.strength:.2f}", coupler.leaf))
+    for bias in sizing.biases:
+        leaves.append((bias.leaf.kind.value, f"|q| = {abs(bias.bias):.2f}", bias.leaf))
+    groups: dict[tuple[str, str, float, float], list[LeafSize]] = {}
+    for kind, nominal, leaf in leaves:
+        groups.setdefault((kind, nominal, leaf.shape.wall, leaf.reach), []).append(leaf)
+    return [
+        FlexureRow(
+            kind=kind,
+            nominal=nominal,
+            count=len(group),
+            wall_mm=wall,
+            legs=group[0].shape.legs,
+            reach_mm=round(reach, 2),
+            stiffness=round(group[0].coupling, 3),
+            strain_percent=round(100 * max(leaf.strain for leaf in group), 2),
+        )
+        for (kind, nominal, wall, reach), group in sorted(groups.items())
+    ]
+
+
+def stock_words(bom: Bom) -> list[tuple[str, str, str, int, float]]:
+    """What, profile, length, count and mass in g of each line of stock."""
+    return [
+        (
+            line.kind.value,
+            f"{line.size_mm:g} mm {'square' if line.profile is Profile.SQUARE else 'round'}, {line.material}",
+            f"{line.length_mm:g} mm",
+            line.count,
+            line.mass_g,
+        )
+        for line in bom.stock
+    ]
+
+
+def kinds_of_masses(network: Network) -> str:
+    """How many masses of each kind, in words."""
+    kinds: dict[str, int] = {}
+    for mass in network.masses:
+        kinds[mass.kind.value] = kinds.get(mass.kind.value, 0) + 1
+    return ", ".join(f"{count} {kind}" for kind, count in kinds.items())
