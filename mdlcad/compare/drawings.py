@@ -10,11 +10,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from xml.etree import ElementTree
 
-import ezdxf
-import ezdxf.path
 import numpy as np
 import shapely
-import trimesh
 from shapely.errors import ShapelyError
 from shapely.geometry.base import BaseGeometry
 
@@ -34,13 +31,16 @@ def read_drawing(path: Path) -> BaseGeometry:
     Raises:
         UsageError: the file cannot be read as a drawing of a plate; the message names it.
     """
+    # the readers of files load in a second or more, and most comparisons need none of them
+    from ezdxf import DXFError
+
     reader = {".dxf": _dxf, ".svg": _svg, ".stl": _stl, ".step": _step}[path.suffix]
     try:
         section = reader(path)
         bounds = section.bounds
     except (OSError, ValueError, KeyError, IndexError, TypeError, ShapelyError, ElementTree.ParseError) as problem:
         raise UsageError(f"{path}: cannot be read as a drawing ({problem or type(problem).__name__})") from None
-    except ezdxf.DXFError as problem:
+    except DXFError as problem:
         raise UsageError(f"{path}: cannot be read as a DXF drawing ({problem})") from None
     if section.is_empty:
         raise UsageError(f"{path}: draws nothing")
@@ -50,6 +50,9 @@ def read_drawing(path: Path) -> BaseGeometry:
 
 
 def _dxf(path: Path) -> BaseGeometry:
+    import ezdxf
+    import ezdxf.path
+
     rings = []
     for entity in ezdxf.readfile(path).modelspace():
         outline = ezdxf.path.make_path(entity)
@@ -96,6 +99,8 @@ def _svg_rings(text: str) -> Iterator[list[tuple[float, float]]]:
 
 def _stl(path: Path) -> BaseGeometry:
     """The cut at half height."""
+    import trimesh
+
     mesh = trimesh.load_mesh(path, file_type="stl")
     if not len(mesh.faces) or not np.isfinite(mesh.vertices).all():
         raise ValueError("holds no mesh")
@@ -108,7 +113,7 @@ def _stl(path: Path) -> BaseGeometry:
 
 
 def _step(path: Path) -> BaseGeometry:
-    from mdlcad.signoff.readback import read_step  # the CAD kernel takes seconds to load
+    from mdlcad.signoff.readback import read_step
 
     return shapely.union_all([body.section for body in read_step(path)], grid_size=1e-4)
 

@@ -155,9 +155,16 @@ def test_every_command_names_every_file_with_every_damage(voter_build, tmp_path,
     def diff(copy: Path) -> list[str]:
         return ["diff", str(voter_build), str(copy), "-vv", "--html", str(tmp_path / "page.html")]
 
+    def view(copy: Path) -> list[str]:
+        return ["view", str(copy), "--screenshot", str(tmp_path / "picture.png")]
+
     for command in (verify, diff, history):
         assert sweep(voter_build, tmp_path / "copy", capsys, command) > 100
     assert sweep(voter_build, tmp_path / "copy", capsys, simulate, r"^(device|network|placement)\.json") > 30
+    assert (
+        sweep(voter_build, tmp_path / "copy", capsys, view, r"^(device|network|placement|sizing|parts|report)\.json")
+        > 60
+    )
 
 
 @pytest.mark.parametrize(
