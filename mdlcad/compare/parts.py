@@ -45,8 +45,8 @@ def part_changes(pair: Pair) -> Findings:
         except UsageError as problem:
             troubles.append(str(problem))
     if len(apart) == len(looks):
-        raise NotComparable("; ".join(notes), apart[0])
-    return Findings(largest_first(changes), notes, troubles, apart)
+        raise NotComparable("; ".join(dict.fromkeys(notes)), apart[0])
+    return Findings(largest_first(changes), tuple(dict.fromkeys(notes)), troubles, apart)
 
 
 def _bodies(pair: Pair) -> list[Change]:

@@ -105,6 +105,7 @@ def make_scene(a: Sequence[Drawn], b: Sequence[Drawn]) -> Scene:
     order: dict[str, float] = {}
     for item in (*a, *b):
         order[item.plate] = min(order.get(item.plate, item.z), item.z)
+    both = bool(a) and bool(b)  # a build without a layout does not differ in all of it; it is not compared
     plates = []
     for plate in sorted(order, key=lambda name: (order[name], name)):
         on_a, on_b = ([item for item in items if item.plate == plate] for items in (a, b))
@@ -116,8 +117,8 @@ def make_scene(a: Sequence[Drawn], b: Sequence[Drawn]) -> Scene:
                 plate,
                 tuple(Shape(item.name, item.colour, index(item.section)) for item in on_a),
                 tuple(Shape(item.name, item.colour, index(item.section)) for item in on_b),
-                None if gone.is_empty else index(gone),
-                None if new.is_empty else index(new),
+                index(gone) if both and not gone.is_empty else None,
+                index(new) if both and not new.is_empty else None,
             )
         )
     bounds = [item.section.bounds for item in (*a, *b)]

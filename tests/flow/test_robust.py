@@ -21,7 +21,7 @@ def _number(text: str) -> Damage:
     """The first number of the file becomes ``text``."""
 
     def damage(path: Path) -> None:
-        path.write_text(re.sub(r"(?<=[\s:,\[])-?\d+(\.\d+)?(?=[,\s\]}])", text, path.read_text(), count=1))
+        path.write_text(re.sub(r"(?<=\s)-?\d+(\.\d+)?(?=[,\n])", text, path.read_text(), count=1))
 
     return damage
 

@@ -55,6 +55,9 @@
         if (plate.only_b !== null && pane.id !== "a")
           element("path", { class: "new", d: scene.paths[plate.only_b], fill: "url(#new)" }, flip);
       }
+      if (!flip.childNodes.length)
+        element("text", { x: whole.x, y: -whole.y, "font-size": whole.w / 24, "text-anchor": "middle", fill: "#5b6876" }, pane.svg)
+          .textContent = "nothing here";
       pane.marks = element("g", {}, pane.svg);
       marks(pane);
     }
