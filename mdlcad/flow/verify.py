@@ -12,14 +12,20 @@ from mdlcad.artefact import checksum, load
 from mdlcad.errors import InputError, SignoffError, UsageError
 from mdlcad.export.mesh import check_stl
 from mdlcad.flow.folder import REPORT
+from mdlcad.flow.plans import GRID_STEPS
+from mdlcad.flow.steps import port_places
 from mdlcad.language import Device
+from mdlcad.mapping import CELLS_FILE, map_netlist, recorded_library
+from mdlcad.mapping.two_phase import TwoPhaseLibrary
 from mdlcad.mechanics import Process, Sizing
 from mdlcad.network.model import Network
 from mdlcad.parts import build_parts
 from mdlcad.parts.plates import plates_of
 from mdlcad.parts.stiffness import carrier_stiffnesses
 from mdlcad.parts.store import Parts, records_of
+from mdlcad.placement.check_grid import check_grid
 from mdlcad.placement.placement import Placement
+from mdlcad.placement.unit_grid import GridPlacement
 from mdlcad.proof.prove import prove
 from mdlcad.proof.reference import build_reference
 from mdlcad.report.report import Report
@@ -29,6 +35,7 @@ from mdlcad.signoff.files import check_bodies
 from mdlcad.signoff.geometry import check_geometry
 from mdlcad.signoff.lvs import compare, recover
 from mdlcad.signoff.readback import read_step
+from mdlcad.synthesis.netlist import Netlist
 
 
 def verify(folder: Path, workers: int, say: Callable[[str], None]) -> list[str]:
@@ -57,7 +64,8 @@ def verify(folder: Path, workers: int, say: Callable[[str], None]) -> list[str]:
 def _verify(folder: Path, report: Report, workers: int, say: Callable[[str], None]) -> list[str]:
     if report.stopped is not None:
         raise UsageError(f"{folder}: its build ended at {report.stopped.stage}: {report.stopped.reason}")
-    if report.extracted is None:
+    placed_only = _is_placed_only(folder, report)
+    if report.extracted is None and not placed_only:
         raise UsageError(f"{folder}: was stopped before its sign-off (--to); build it whole to verify it")
     broken: list[str] = []
 
@@ -72,6 +80,13 @@ def _verify(folder: Path, report: Report, workers: int, say: Callable[[str], Non
     reference = build_reference(device)
     proof = prove(network, reference, seed=report.seed, workers=workers)
     step("behaviour", [] if proof.holds else [str(item) for item in proof.first_mismatches] or ["nothing was checked"])
+    if placed_only:
+        again = map_netlist(load(folder, "netlist.json", Netlist), recorded_library(folder))
+        step("mapping", [] if again == network else [f"network.json: not what {CELLS_FILE} makes of netlist.json"])
+        grid = load(folder, "placement.json", GridPlacement)
+        boundary = tuple(line.start for line in device.boundary)
+        step("placement", check_grid(network, grid, boundary, port_places(device)))
+        return broken
     sizing, process = load(folder, "sizing.json", Sizing), load(folder, "process.json", Process)
     placement, layout = load(folder, "placement.json", Placement), load(folder, "layout.json", Layout)
     bodies = build_parts(network, placement, layout, sizing, process, Polygon(placement.boundary))
@@ -98,6 +113,12 @@ def _verify(folder: Path, report: Report, workers: int, say: Callable[[str], Non
         words = [str(item) for item in built.first_mismatches] or ["nothing was checked"]
         step("extracted", [] if built.holds else words)
     return broken
+
+
+def _is_placed_only(folder: Path, report: Report) -> bool:
+    """Whether the build is as whole as its cell library allows: placed on the grid, without parts."""
+    last = report.stages[-1].name if report.stages else ""
+    return last == GRID_STEPS[-1].name and isinstance(recorded_library(folder), TwoPhaseLibrary)
 
 
 def _check_hashes(folder: Path, report: Report) -> list[str]:
