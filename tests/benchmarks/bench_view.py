@@ -43,6 +43,7 @@ def one_actor_a_body(model: Model) -> Any:
 def seconds_a_frame(plotter: Any, frames: int, before: Callable[[int], None]) -> float:
     """Time of a frame, the first (which loads everything) left out."""
     plotter.show(auto_close=False)
+    plotter.render()
     began = time.perf_counter()
     for frame in range(frames):
         before(frame)
@@ -64,14 +65,14 @@ def main() -> None:
     merged = seconds_a_frame(stage.plotter, frames, lambda _: None)
     apart = seconds_a_frame(stage.plotter, frames, lambda n: stage.stand(explode=n / frames, displacements=None))
     each = seconds_a_frame(single, frames, lambda _: None)
-    print(
-        f"{model.built.report.design}: {len(model.built.bodies)} bodies, {sum(len(g.faces) for g in model.groups)} triangles"
-    )
-    print(f"merged            {len(stage.actors):5} actors  {1e3 * merged:7.1f} ms a frame")
-    print(f"merged, moving    {len(stage.actors):5} actors  {1e3 * apart:7.1f} ms a frame")
-    print(
-        f"one actor a body  {len(single.actors):5} actors  {1e3 * each:7.1f} ms a frame, {each / merged:.1f} times as long"
-    )
+    triangles = sum(len(group.faces) for group in model.groups)
+    print(f"{model.built.report.design}: {len(model.built.bodies)} bodies, {triangles} triangles")
+    for name, actors, seconds in (
+        ("merged", len(stage.actors), merged),
+        ("merged, moving", len(stage.actors), apart),
+        ("one actor a body", len(single.actors), each),
+    ):
+        print(f"{name:<17}{actors:5} actors {1e3 * seconds:8.1f} ms a frame, {seconds / merged:.1f} times as long")
 
 
 if __name__ == "__main__":
