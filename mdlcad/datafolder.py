@@ -33,7 +33,7 @@ def find_data(kind: str, name_or_path: str, suffix: str) -> Path:
         UsageError: nothing of that name; the message lists what there is.
     """
     given = Path(name_or_path)
-    if given.suffix or len(given.parts) > 1:
+    if given.suffix or "/" in name_or_path:  # of "./name", a Path keeps the name alone
         if given.exists():
             return given
         raise UsageError(f"{name_or_path}: no such file or folder")

@@ -4,6 +4,7 @@ import json
 import shutil
 import subprocess
 import sys
+from fnmatch import fnmatch
 from pathlib import Path
 
 import pytest
@@ -58,6 +59,15 @@ def test_every_promised_file_is_there_and_hashed(built):
     assert set(wanted) <= set(files)
     on_disk = {path.relative_to(built).as_posix() for path in built.rglob("*") if path.is_file()}
     assert on_disk == set(files) | {"report.json", "report.html"}
+
+
+def test_every_file_of_a_build_is_told_in_the_docs_and_every_file_told_is_there(built):
+    lines = (ROOT / "docs" / "formats.md").read_text().splitlines()
+    told = [line.split("`")[1].replace("NAME", "voter") for line in lines if line.startswith("| `")]
+    assert len(told) > 20
+    files = [path.relative_to(built).as_posix() for path in built.rglob("*") if path.is_file()]
+    assert [name for name in files if not any(fnmatch(name, pattern) for pattern in told)] == []
+    assert [pattern for pattern in told if not any(fnmatch(name, pattern) for name in files)] == []
 
 
 def test_verify_signs_the_untouched_build_off(built, capsys):
