@@ -77,7 +77,7 @@ def build_network(
         [*sensors, *ports],
         [names[mass.key] for mass in ordered if mass.function.bias],
     )
-    couplings = tuple(_coupling(library, a, b, weight * polarity[a] * polarity[b]) for a, b, weight in springs)
+    couplings = tuple(coupling_of(library, a, b, weight * polarity[a] * polarity[b]) for a, b, weight in springs)
     load: dict[str, float] = {}
     for coupling in couplings:
         for end in (coupling.source, coupling.target):
@@ -121,7 +121,8 @@ def discrete(network: Network, library: Library) -> DiscreteNetwork:
     return DiscreteNetwork(network, library.coupling.strength, library.bias.force)
 
 
-def _coupling(library: Library, source: str, target: str, weight: int) -> Coupling:
+def coupling_of(library: Library, source: str, target: str, weight: int) -> Coupling:
+    """The spring of an input of that signed weight."""
     table = library.coupling
     ratio = table.self_stiffness_negative if weight < 0 else table.self_stiffness_positive
     strength = weight * table.strength

@@ -11,6 +11,7 @@ import msgspec
 
 from mdlcad.datafolder import find_data
 from mdlcad.errors import UsageError
+from mdlcad.mapping.characterisation import Characterisation
 from mdlcad.network.model import Dynamics
 
 
@@ -68,23 +69,6 @@ class PowerUpTable:
 
 
 @dataclass(frozen=True, slots=True)
-class CharacterisedTable:
-    """Table ``characterised``: where the library was found to work, by the window and yield tools on the examples.
-
-    Attributes:
-        least_period, greatest_period, least_damping: all examples behave for every T and b between these and the
-            shipped damping.
-        spread: standard deviation of scatter (relative on springs; see ``simulation.scatter``) up to which at least
-            nine devices in ten behave.
-    """
-
-    least_period: float
-    greatest_period: float
-    least_damping: float
-    spread: float
-
-
-@dataclass(frozen=True, slots=True)
 class Library:
     """One library, the tables of its ``library.toml``. All quantities are dimensionless."""
 
@@ -96,7 +80,7 @@ class Library:
     bias: BiasTable
     gates: GatesTable
     power_up: PowerUpTable
-    characterised: CharacterisedTable
+    characterisation: Characterisation | None = None
     kind: Literal["parametron"] = "parametron"
 
     def network_dynamics(self) -> Dynamics:
@@ -139,7 +123,7 @@ def _unknown_keys(table: dict[str, object]) -> list[str]:
         "bias": BiasTable,
         "gates": GatesTable,
         "power_up": PowerUpTable,
-        "characterised": CharacterisedTable,
+        "characterisation": Characterisation,
     }
     unknown = []
     for key, value in table.items():

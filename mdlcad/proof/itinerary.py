@@ -47,17 +47,39 @@ class Itinerary:
     method: str
 
 
+# Random inputs repeat transitions: a sampled proof goes on until enough distinct ones were met, but not for ever.
+_MOST_TIMES = 4
+
+
 def make_itinerary(
     reference: Behaviour, decisions: int, seed: int, *, exhaustive: bool = True, lanes: int = _LANES
 ) -> Itinerary:
     """Choose transitions and walks: all transitions if they are known and few enough, else ``decisions`` of them.
 
-    ``exhaustive`` = False: ``decisions`` of them in any case. More than ``lanes`` lanes are used where some states
+    Of these, all are distinct as far as there are so many and four times as many decisions meet them.
+    ``exhaustive`` = False: ``decisions`` decisions in any case. More than ``lanes`` lanes are used where some states
     cannot be reached from others.
     """
+    asked_for_all = exhaustive
     graph, wanted, exhaustive, method = _goals(reference, decisions, seed, exhaustive)
     walks = plan(graph, wanted, lanes, seed)
     length = max(_LEAST_DECISIONS, max(map(len, walks)), 0 if exhaustive else -(-decisions // len(walks)))
+    bits = len(reference.states) + len(reference.inputs)
+    known = len(graph.states) if reference.states else 1
+    total = known << len(reference.inputs) if graph.complete else 1 << bits
+
+    inputs, states, outputs = _follow(reference, graph, walks, length, seed)
+    longest = _MOST_TIMES * length
+    while asked_for_all and not exhaustive and length < longest and _distinct(states, inputs) < min(decisions, total):
+        length = min(longest, length + -(-length // 4))
+        inputs, states, outputs = _follow(reference, graph, walks, length, seed)
+    return Itinerary(inputs, states, outputs, total, (1 << bits) - total, exhaustive, known, method)
+
+
+def _follow(
+    reference: Behaviour, graph: Graph, walks: list[list[int]], length: int, seed: int
+) -> tuple[Bits, Bits, Bits]:
+    """Inputs, states and outputs of ``length`` decisions: the walks, then random inputs."""
     # Random inputs after the planned ones, vectors that the graph knows and others alike.
     inputs = np.random.default_rng([seed, 2]).integers(0, 2, (length, len(walks), len(reference.inputs)), np.uint8)
     for lane, walk in enumerate(walks):
@@ -68,12 +90,13 @@ def make_itinerary(
     states[0] = reference.initial
     for d in range(length):
         states[d + 1], outputs[d] = reference.step(states[d], inputs[d])
+    return inputs, states, outputs
 
-    bits = len(reference.states) + len(reference.inputs)
-    known = len(graph.states) if reference.states else 1
-    total = known << len(reference.inputs) if graph.complete else 1 << bits
-    unreachable = (1 << bits) - total
-    return Itinerary(inputs, states, outputs, total, unreachable, exhaustive, known, method)
+
+def _distinct(states: Bits, inputs: Bits) -> int:
+    """Transitions met, each counted once."""
+    pairs = np.packbits(np.concatenate([states[:-1], inputs], axis=2), axis=2)
+    return len(np.unique(pairs.reshape(-1, pairs.shape[2]), axis=0))
 
 
 def _goals(

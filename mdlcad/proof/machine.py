@@ -16,6 +16,11 @@ EXHAUSTIVE_BITS = 12
 
 _MAX_STATES = 4096
 _MAX_VECTORS = 256
+
+# Beyond that, up to so many vectors are tried while the table of all moves stays below _MAX_MOVES: a state that only a
+# few vectors lead to is not found otherwise.
+_MANY_VECTORS_BITS = 12
+_MAX_MOVES = 1 << 22
 _BATCH = 1 << 16
 
 _UNKNOWN = -1
@@ -31,6 +36,7 @@ class Graph:
         following: int[n, k], the next state, or -1 if it is not among ``states``.
         first: int[n, 2], the (state, vector) by which each state was first reached; -1 for state 0.
         complete: all input vectors were tried and all reachable states are here.
+        closed: all states that these vectors lead to are here.
     """
 
     states: Bits
@@ -38,6 +44,7 @@ class Graph:
     following: Ints
     first: Ints
     complete: bool
+    closed: bool = True
 
 
 def all_vectors(bits: int) -> Bits:
@@ -58,11 +65,23 @@ def explore(behaviour: Behaviour, seed: int) -> Graph:
     """Breadth-first search from power-up, a level at a time, for a machine with at least one state bit.
 
     All input vectors are tried if there are few enough, else a seeded sample; the search stops at 4,096 states. With
-    at most EXHAUSTIVE_BITS bits of state and inputs the graph is always complete.
+    at most EXHAUSTIVE_BITS bits of state and inputs the graph is always complete. Between these, many vectors are
+    tried from fewer states, and few from many, and the graph is the one that found more states.
     """
     inputs, bits = len(behaviour.inputs), len(behaviour.states)
-    small = inputs + bits <= EXHAUSTIVE_BITS or 1 << inputs <= _MAX_VECTORS
-    vectors = all_vectors(inputs) if small else some_vectors(inputs, _MAX_VECTORS, seed)
+    if inputs + bits <= EXHAUSTIVE_BITS or 1 << inputs <= _MAX_VECTORS:
+        return _explore(behaviour, all_vectors(inputs), _MAX_STATES, True)
+    every = inputs <= _MANY_VECTORS_BITS
+    many = all_vectors(inputs) if every else some_vectors(inputs, 1 << _MANY_VECTORS_BITS, seed)
+    wide = _explore(behaviour, many, min(_MAX_STATES, _MAX_MOVES // len(many)), every)
+    if wide.closed:
+        return wide
+    deep = _explore(behaviour, some_vectors(inputs, _MAX_VECTORS, seed), _MAX_STATES, False)
+    return deep if len(deep.states) > len(wide.states) else wide
+
+
+def _explore(behaviour: Behaviour, vectors: Bits, most_states: int, every: bool) -> Graph:
+    """Breadth-first search by ``vectors``, which are ``every`` vector there is or some, to ``most_states`` states."""
     k = len(vectors)
 
     initial = np.asarray(behaviour.initial, dtype=np.uint8)
@@ -82,7 +101,7 @@ def explore(behaviour: Behaviour, seed: int) -> Graph:
         for u in np.argsort(index):  # in order of discovery, whatever the values
             key = unique[u].tobytes()
             if key not in place:
-                if len(states) == _MAX_STATES:
+                if len(states) == most_states:
                     closed = False
                     continue
                 place[key] = len(states)
@@ -90,7 +109,7 @@ def explore(behaviour: Behaviour, seed: int) -> Graph:
                 first.append((here + int(index[u]) // k, int(index[u]) % k))
             number[u] = place[key]
         rows.extend(number[inverse.ravel()].reshape(len(level), k))
-    return Graph(np.array(states), vectors, np.array(rows), np.array(first, dtype=np.int64), small and closed)
+    return Graph(np.array(states), vectors, np.array(rows), np.array(first, dtype=np.int64), every and closed, closed)
 
 
 def single_state_graph(vectors: Bits, complete: bool) -> Graph:

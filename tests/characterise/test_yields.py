@@ -12,12 +12,12 @@ from scipy.stats import binomtest
 from mdlcad.artefact import from_json, to_json
 from mdlcad.characterise.yields import SpreadResult, describe_cell
 from mdlcad.cli import main
-from tests.scenario.builds import make_build, network_of
+from tests.scenario.builds import QUICKLY, make_build, network_of
 
 
 @pytest.fixture(scope="module")
 def voter(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return make_build("voter", tmp_path_factory.mktemp("voter"))
+    return make_build("voter", tmp_path_factory.mktemp("voter"), QUICKLY)
 
 
 def copy(build: Path, folder: Path) -> Path:

@@ -21,7 +21,7 @@ Fault = tuple[str, str, Network]
 """Its kind, where it is, and the network that has it."""
 
 # decisions of every lane that are tried before all of them are
-_PREFIX = 8
+_PREFIXES = (2, 8)
 
 
 def all_faults(network: Network) -> Iterator[Fault]:
@@ -68,7 +68,7 @@ def caught(network: Network, reference: Behaviour, itinerary: Itinerary) -> bool
         timing = find_timing(network, system, steps)
     except NoTick:
         return True
-    for decisions in (_PREFIX, len(itinerary.inputs)):
+    for decisions in (*_PREFIXES, len(itinerary.inputs)):
         part = replace(
             itinerary,
             inputs=itinerary.inputs[:decisions],

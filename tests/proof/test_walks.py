@@ -112,6 +112,32 @@ def test_too_large_a_machine_is_explored_as_far_as_it_goes() -> None:
     assert (graph.following == -1).any()
 
 
+def wide(bits: int, inputs: int) -> Machine:
+    """A register that takes its first inputs: every state can be reached, and there are too many transitions."""
+
+    def rule(states: np.ndarray, vectors: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        return vectors[:, :bits].copy(), states
+
+    names = [tuple(f"{name}[{i}]" for i in range(size)) for name, size in (("I", inputs), ("O", bits), ("S", bits))]
+    return Machine(names[0], names[1], names[2], np.zeros(bits, np.uint8), rule)
+
+
+@pytest.mark.parametrize(("bits", "inputs"), [(3, 13), (8, 9), (0, 16)])
+def test_beyond_twelve_bits_twenty_thousand_transitions_and_every_state(bits: int, inputs: int) -> None:
+    plans = make_itinerary(wide(bits, inputs), 20_000, 0)
+    assert not plans.exhaustive
+    assert plans.total == 2 ** (bits + inputs)
+    pairs = np.concatenate([plans.states[:-1], plans.inputs], axis=2).reshape(-1, bits + inputs)
+    assert len(np.unique(pairs, axis=0)) >= 20_000
+    met = {state.tobytes() for state in plans.states.reshape(pairs.shape[0] + len(plans.inputs[0]), bits)}
+    assert len(met) == plans.reachable_states == 2**bits
+
+
+def test_twelve_bits_are_checked_in_full() -> None:
+    plans = make_itinerary(wide(3, 9), 20_000, 0)
+    assert plans.exhaustive and plans.total == 4096
+
+
 def test_samples_hold_the_corners() -> None:
     vectors = {tuple(int(bit) for bit in row) for row in some_vectors(20, 100, 0)}
     assert {(0,) * 20, (1,) * 20, (1,) + (0,) * 19, (0,) + (1,) * 19} <= vectors

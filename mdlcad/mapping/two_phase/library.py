@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
+from mdlcad.mapping.characterisation import Characterisation
 from mdlcad.network.model import CouplingKind, Dynamics
 
 # truth tables of one input and of two
@@ -98,6 +99,7 @@ class TwoPhaseLibrary:
         parameters: name of the parameter set in use, one of ``parameter_sets``.
         fan_out: most inputs that one output may drive.
         cells: in the order of the file.
+        characterisation: where the file's default parameter set was measured to work; None if it does not say.
     """
 
     name: str
@@ -110,6 +112,7 @@ class TwoPhaseLibrary:
     roles: Roles
     cells: tuple[Cell, ...]
     kind: Literal["two_phase"] = "two_phase"
+    characterisation: Characterisation | None = None
 
     def cell(self, name: str) -> Cell:
         """The cell called ``name``; KeyError if there is none."""

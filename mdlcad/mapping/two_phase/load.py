@@ -11,6 +11,7 @@ import msgspec
 
 from mdlcad.datafolder import find_data
 from mdlcad.errors import UsageError
+from mdlcad.mapping.characterisation import Characterisation
 from mdlcad.mapping.request import AS_WRITTEN, MappingRequest
 from mdlcad.mapping.two_phase.function import truth_table
 from mdlcad.mapping.two_phase.library import (
@@ -85,6 +86,7 @@ class LibraryData(msgspec.Struct, frozen=True, forbid_unknown_fields=True, renam
     gates: GatesData
     cell: list[CellData]
     sets: dict[str, dict[str, float]]
+    characterisation: Characterisation | None = None
 
 
 def load_two_phase(name_or_path: str, request: MappingRequest = AS_WRITTEN) -> TwoPhaseLibrary:
@@ -136,6 +138,7 @@ def _library(data: LibraryData, request: MappingRequest) -> TwoPhaseLibrary:
         fan_out=data.gates.fan_out,
         roles=data.roles,
         cells=cells,
+        characterisation=data.characterisation,
     )
     check_library(library)
     return library

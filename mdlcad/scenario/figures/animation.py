@@ -135,7 +135,7 @@ def _gif(pictures: list[Image.Image], milliseconds: int) -> bytes:
 
 
 def _head(decision: Decision, count: int) -> str:
-    words = f"decision {decision.number} of 0 to {count - 1}"
+    words = f"decision {decision.number}, the last is {count - 1}"
     if decision.words:
         words += f": {decision.words}"
     answer = ", ".join(f"{value.port}: {value.label}" for value in decision.actuators)

@@ -32,7 +32,15 @@ def draw_map(axes: Axes, maze: Maze) -> None:
     start = next((row, text.index("S")) for row, text in enumerate(maze.rows) if "S" in text)
     for cell, colour, word in ((start, FAINT, "start"), (maze.exit, GOOD, "exit")):
         axes.fill(*_square(cell, 0.5), color=colour, alpha=0.35, lw=0)
-        axes.text(cell[1], cell[0] + 0.38, word, ha="center", va="center", fontsize=7.5, color=INK)
+        axes.text(
+            cell[1],
+            cell[0] + (0.38 if word == "start" else -0.38),
+            word,
+            ha="center",
+            va="center",
+            fontsize=7.5,
+            color=INK,
+        )
     axes.set_xlim(-0.6, columns - 0.4)
     axes.set_ylim(rows - 0.4, -0.6)
     axes.set_aspect("equal")
