@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from mdlcad.mapping.characterisation import Characterisation
 from mdlcad.mapping.dispatch import Library
 from mdlcad.mapping.liberty import REGISTER_MASSES, gate_function, gate_name, threshold_gates
 from mdlcad.mapping.library import Library as ParametronLibrary
@@ -27,16 +28,27 @@ def _head(name: str, title: str, kind: str, dynamics: Dynamics) -> list[str]:
     ]
 
 
+def _window(found: Characterisation | None) -> list[str]:
+    """Where every cell was measured to work."""
+    if found is None:
+        return []
+    rows = zip(found.periods, found.least_damping, found.greatest_damping, strict=True)
+    words = [f"T = {period:g} with b = {least:g} to {greatest:g}" for period, least, greatest in rows]
+    return [
+        *(f"  {'works for' if place == 0 else '':<9}  {line}" for place, line in enumerate(words)),
+        f"  spread     every cell bears {found.spread:g}",
+    ]
+
+
 def _parametron(library: ParametronLibrary) -> list[str]:
-    mass, spring, found = library.mass, library.coupling, library.characterised
+    mass, spring = library.mass, library.coupling
     lines = [
         *_head(library.name, library.title, library.kind, library.network_dynamics()),
         f"  stiffness  k = {mass.k0:g} {mass.k1:+g} p",
         f"  spring     c = {spring.strength:g} per weight, constant; bias q = {library.bias.force:g} per weight",
         f"  limits     weights of a mass {library.gates.weight_limit}, load {library.gates.load_limit}, "
         f"echo {library.gates.echo_limit}",
-        f"  works for  T = {found.least_period:g} to {found.greatest_period:g}, b = {found.least_damping:g} to "
-        f"{library.dynamics.damping:g}; spread up to {found.spread:g}",
+        *_window(library.characterisation),
         "",
         "  gates of one mass (any input may be inverted, at no cost)",
         f"    {'cell':<10} {'weights':<12} {'bias':>4}  function",
@@ -55,6 +67,7 @@ def _two_phase(library: TwoPhaseLibrary) -> list[str]:
         *_head(library.name, library.title, library.kind, library.dynamics),
         f"  parameters {library.parameters} (of {', '.join(library.parameter_sets)}; --parameters)",
         f"  fan-out    {library.fan_out} inputs on an output",
+        *_window(library.characterisation),
         "",
         "  synthesis options (each can be set in the file, and by the build's option)",
         f"    clock_length {options.clock_length:<6} --clock-length N",
