@@ -64,6 +64,7 @@ def _draw_spread(axes: Axes, result: CharacterisationResult) -> None:
     axes.axhline(100 * BORNE, color=NEGATIVE, linewidth=0.8, linestyle="--")
     axes.axvline(100 * result.found.spread, color=GOOD, linewidth=1.2)
     axes.set_ylim(-3, 104)
+    axes.set_xlim(left=0)
     axes.set_xlabel("spread: standard deviation of spring strength, %")
     axes.set_ylabel("devices right, %")
     samples = result.sweep.samples
