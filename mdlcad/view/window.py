@@ -54,6 +54,13 @@ def open_window(scene: Scene, look: Look) -> None:
     """
     need_screen()
     plotter = pyvista.Plotter(title=f"mdlcad: {scene.built.report.design}", window_size=list(look.size))
+    if sys.platform.startswith("linux") and not plotter.ren_win.IsA("vtkXOpenGLRenderWindow"):
+        # VTK has asked the X server, found none, and would draw where nobody sees it
+        plotter.close()
+        raise UsageError(
+            f"the screen {os.environ.get('DISPLAY')} (DISPLAY) cannot be opened; write a picture with --screenshot "
+            "P.png, a page with --html P.html or an animation with --animate P.gif"
+        )
     try:
         controls = Controls(scene, Stage(scene.model, plotter), look)
         controls.attach()

@@ -1,6 +1,8 @@
 """The window's keys, boxes and mouse, on a window that no screen shows; and what is said where there is no screen."""
 
 import os
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -22,6 +24,19 @@ def test_without_a_screen_it_says_what_to_do(
     assert main(["view", str(voter)]) == UNUSABLE
     said = capsys.readouterr().err
     assert "there is no screen" in said and "--screenshot" in said and "--html" in said and said.count("\n") == 1
+
+
+def test_a_screen_that_is_not_there_is_told_too(voter: Path) -> None:
+    done = subprocess.run(
+        [sys.executable, "-m", "mdlcad.cli", "view", str(voter)],
+        env={"DISPLAY": ":4711", "PATH": "/usr/bin:/bin"},
+        capture_output=True,
+        text=True,
+        timeout=200,
+        check=False,
+    )
+    assert done.returncode == UNUSABLE
+    assert "the screen :4711 (DISPLAY) cannot be opened" in done.stderr and "Traceback" not in done.stderr
 
 
 class Hands:
