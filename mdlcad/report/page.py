@@ -101,7 +101,7 @@ def page(folder: Path) -> str:
         ports=port_rows(device) if device else [],
         proofs=proofs,
         margins=margin_rows(report, process, sizing, proofs),
-        rules=rule_rows(rules) if rules else [],
+        rules=rule_rows(rules, report, process) if rules else [],
         sizes=size_rows(sizing, process) if sizing and process else [],
         flexures=flexure_rows(sizing) if sizing else [],
         bom=report.bom,

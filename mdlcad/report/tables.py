@@ -89,21 +89,36 @@ class FlexureRow:
     strain_percent: float
 
 
-def rule_rows(rules: DesignRules) -> list[RuleRow]:
-    """One row a rule, those that are missed first."""
+def rule_rows(rules: DesignRules, report: Report, process: Process | None) -> list[RuleRow]:
+    """One row a rule, those that are missed first; of a rule that holds, the worst that there is where it is known."""
     rows = []
+    nearest = _nearest(report, process) if process else {}
     for rule, count in rules.counts.items():
         found = [item for item in rules.findings if item.rule == rule]
         asks, unit = _RULES.get(rule, (rule.replace("_", " "), ""))
         verdict = "holds" if count == 0 else "warning" if rule in rules.warned else "fails"
-        rows.append(RuleRow(rule, asks, count, _worst(found, unit), verdict))
+        worst = _worst(found, unit) if found else nearest.get(rule, "none found")
+        rows.append(RuleRow(rule, asks, count, worst, verdict))
     order = {"fails": 0, "warning": 1, "holds": 2}
     return sorted(rows, key=lambda row: (order[row.verdict], row.rule))
 
 
+def _nearest(report: Report, process: Process) -> dict[str, str]:
+    """What comes nearest to the limit of a rule that holds, where the report has it."""
+    found = {}
+    mechanics, bom = report.mechanics, report.bom
+    if mechanics is not None and mechanics.carrier_stiffness_ratio_worst is not None:
+        ratio = mechanics.carrier_stiffness_ratio_worst
+        found["carrier_stiffness"] = f"{ratio:.4g} times (limit {process.link.carrier_ratio:g})"
+    if bom is not None and bom.sheets:
+        widest = max(bom.sheets, key=lambda line: (max(line.size_mm), line.plate))
+        bed = process.machine.bed
+        size = f"{widest.size_mm[0]:g} × {widest.size_mm[1]:g} mm"
+        found["bed"] = f"{size} (bed {bed[0]:g} × {bed[1]:g}): {widest.plate}"
+    return found
+
+
 def _worst(found: Sequence[Finding], unit: str) -> str:
-    if not found:
-        return ""
     worst = max(found, key=lambda item: (abs(item.value - item.limit), item.bodies))
     who = ", ".join(worst.bodies)
     if worst.value == worst.limit:

@@ -27,7 +27,7 @@ def proof(wrong: int = 0) -> Proof:
     )  # fmt: skip
 
 
-RULES = DesignRules({"min_wall": 0, "overlap": 0, "carrier_stiffness": 0}, (), ("carrier_stiffness",))
+RULES = DesignRules({"bed": 0, "min_wall": 0, "overlap": 0, "carrier_stiffness": 0}, (), ("carrier_stiffness",))
 BROKEN = DesignRules(
     {"min_wall": 0, "overlap": 1, "carrier_stiffness": 2},
     (

@@ -89,6 +89,15 @@ def test_what_does_not_hold_is_said_first_and_every_rule_has_its_count_and_worst
     assert "holds" in rows["min_wall"][2]
 
 
+def test_a_rule_that_holds_says_how_near_its_limit_is(whole):
+    root = html.document_fromstring(page(whole))
+    report = json.loads((whole / "report.json").read_text())
+    shown = text_of(root.get_element_by_id("rules"))
+    assert "none found" in shown
+    widest = max(report["bom"]["sheets"], key=lambda line: max(line["size_mm"]))
+    assert f"{widest['size_mm'][0]:g} ×" in shown
+
+
 def test_a_wrong_network_is_shown_with_what_it_did(tmp_path):
     reason = "the network does not behave as the program says"
     at = folder(
