@@ -108,6 +108,8 @@ def sweep(
     for name, words, damage in damages(build):
         if re.search(files, name) and (not kinds or words in kinds):
             copy = damaged(build, place, name, damage)
+            if (copy / name).is_file() and (copy / name).read_bytes() == (build / name).read_bytes():
+                continue  # it holds no number that could be spoilt
             check(capsys, copy, name, words, command(copy), (FAILS, UNUSABLE))
             count += 1
     return count
