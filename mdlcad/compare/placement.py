@@ -21,8 +21,12 @@ _AROUND_MM = 6.0
 
 def placement_changes(pair: Pair) -> Findings:
     """Changes of the placement, largest first, and remarks."""
-    if all(_on_grid(build) for build in (pair.a, pair.b)):
+    on_grid = [build.label for build in (pair.a, pair.b) if _on_grid(build)]
+    if len(on_grid) == 2:
         return _grid_changes(pair)
+    if on_grid and pair.a.has("placement.json") and pair.b.has("placement.json"):
+        words = f"the masses of {on_grid[0]} stand on the program's grid, those of the other in mm"
+        raise NotComparable(words, "placement.json")
     a, b = pair.both("placement.json", Placement)
     units_a = {pair.mass(unit.mass): unit for unit in a.masses}
     units_b = {unit.mass: unit for unit in b.masses}

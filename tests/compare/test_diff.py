@@ -178,6 +178,29 @@ def test_another_process_is_told_figure_by_figure(voter_build, tmp_path):
     assert any(what == "size of unit" for _, what, _ in changes(found, "parts"))
 
 
+def grid_placement(copy: Path) -> None:
+    """As a library without parts leaves it."""
+    with edited(copy, "placement.json") as placement:
+        masses = [{"mass": m["mass"], "x": m["column"], "y": m["row"], "port": None} for m in placement["masses"]]
+        placement.clear()
+        placement.update(
+            placer="anneal", seed=0, boundary=[[0, 0], [9, 0], [9, 9]], footprint=1, masses=masses, ports=[],
+            crossings=1, length=2.5,
+        )  # fmt: skip
+
+
+def test_masses_on_the_program_s_grid_are_compared_with_their_like_alone(voter_build, copy, tmp_path):
+    grid_placement(copy)
+    other = copy_of(copy, tmp_path / "other")
+    with edited(other, "placement.json") as placement:
+        placement["masses"][0]["x"] += 1
+        mass = placement["masses"][0]["mass"]
+    assert changes(compare(copy, other), "placement") == [("changed", "mass", mass)]
+    level = next(level for level in compare(voter_build, copy).levels if level.name == "placement")
+    assert level.state is LevelState.NOT_COMPARED
+    assert "program's grid" in level.reason
+
+
 def test_a_build_of_another_version_is_compared_as_far_as_it_can_be_read(voter_build, copy):
     from mdlcad.artefact import checksum
 
