@@ -150,10 +150,9 @@ class Catalogue:
         facts = [("net of", name), *self._mass(mass)]
         driven = [item for item in self._couplings.values() if item.source == name and item.name in self._carriers]
         if driven:
-            worst = min(driven, key=lambda item: self._carriers[item.name].ratio)
-            facts.append(
-                ("weakest", f"{self._carriers[worst.name].ratio:.1f} times as stiff as its coupler to {worst.target}")
-            )
+            driven.sort(key=lambda item: self._carriers[item.name].ratio)
+            ratios = [f"{self._carriers[item.name].ratio:.1f} to {item.target}" for item in driven]
+            facts.append(("stiffness", f"{', '.join(ratios)} (times that of its coupler, weakest first)"))
         return Card(body.name, f"net {name}", tuple(facts))
 
     def _clock(self, body: Body) -> Card:

@@ -52,7 +52,14 @@ def test_the_margin_is_what_is_left_of_the_strain_limit() -> None:
     assert catalogue.margin(BUILT.bodies[NUMBER["trunk.m0.t"]]) is None
 
 
-def test_the_weakest_carrier_is_told_with_its_ratio(scene: Scene) -> None:
+def test_a_net_s_card_has_the_stiffness_ratio_of_its_carrier_at_every_coupler(scene: Scene) -> None:
+    coupling = scene.built.network.couplings[0]
+    ratio = next(item.ratio for item in scene.built.carriers if item.coupling == coupling.name)
+    number = next(i for i, card in enumerate(scene.cards) if card.subject == f"net {coupling.source}")
+    assert f"{ratio:.1f} to {coupling.target}" in dict(scene.cards[number].facts)["stiffness"]
+
+
+def test_a_coupling_s_card_has_its_carrier_s_ratio(scene: Scene) -> None:
     ratios = {item.coupling: item.ratio for item in scene.built.carriers}
     number = next(i for i, body in enumerate(scene.built.bodies) if body.name.startswith("coupler."))
     name = scene.built.bodies[number].name.removeprefix("coupler.")
