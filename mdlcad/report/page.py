@@ -38,6 +38,7 @@ T = TypeVar("T")
 PICTURES = {
     "stack": "the device without its cover, seen from a corner",
     "exploded": "the plates of the device, drawn apart",
+    "placement": "the network of masses and springs, where it is placed",
 }
 
 
@@ -109,7 +110,8 @@ def page(folder: Path) -> str:
         pictures=[
             (name, words, Markup(data))
             for name, words in PICTURES.items()
-            if (data := photo(folder / "views" / f"{name}.png")) is not None
+            # where there is a layout, its drawing shows more
+            if not (name == "placement" and layout) and (data := photo(folder / "views" / f"{name}.png")) is not None
         ],
         layout=Markup(layout) if layout else None,
         plates=plate_drawings(folder, report),
