@@ -163,10 +163,7 @@ def test_every_command_names_every_file_with_every_damage(voter_build, tmp_path,
     for command in (verify, diff, history):
         assert sweep(voter_build, tmp_path / "copy", capsys, command) > 100
     assert sweep(voter_build, tmp_path / "copy", capsys, simulate, r"^(device|network|placement)\.json") > 30
-    assert (
-        sweep(voter_build, tmp_path / "copy", capsys, view, r"^(device|network|placement|sizing|parts|report)\.json")
-        > 60
-    )
+    assert sweep(voter_build, tmp_path / "copy", capsys, view, r"^(device|network|placement|sizing|parts)\.json") > 50
 
 
 @pytest.mark.parametrize(
