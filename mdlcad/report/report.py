@@ -93,7 +93,6 @@ class Report:
     lvs: Lvs | None
     drc: dict[str, int] | None
     mechanics: Mechanics | None
-    drive: DriveLoads | None
     extent_mm: tuple[float, float, float] | None
     plates: tuple[str, ...]
     tiles: int | None
@@ -103,3 +102,4 @@ class Report:
     stopped: Stopped | None = None
     failures: tuple[str, ...] = ()
     bom: Bom | None = None
+    drive: DriveLoads | None = None

@@ -12,6 +12,7 @@ from mdlcad.view.built import Trust
 from mdlcad.view.scene import Look, Scene, open_scene
 
 _STILL = (1600, 1200)
+_WINDOW = (1200, 800)  # fits the screens of small laptops
 _MOVING = (960, 720)
 
 
@@ -65,7 +66,7 @@ def view(folder: Path, wanted: Wanted, say: Callable[[str], None]) -> None:
     if not to_file:
         from mdlcad.view.window import open_window
 
-        open_window(scene, replace(look, size=wanted.size or _STILL))
+        open_window(scene, replace(look, size=wanted.size or _WINDOW))
         return
     for path, data in _files(scene, look, wanted):
         try:

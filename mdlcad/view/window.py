@@ -243,7 +243,8 @@ class Controls:
             loc="upper right",
             size=(0.17, 0.026 * len(keys)),
             border=False,
-            background_opacity=0.0,
+            background_color="white",
+            background_opacity=0.7,
         )
         plotter.render()
 
