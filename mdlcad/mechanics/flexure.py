@@ -142,15 +142,20 @@ def drawn_in(chain: Chain, solution: Solution) -> float:
     return examine(chain, solution).shortening - float(solution.displacements[dof(chain.right, X)])
 
 
-def deflect(chain: Chain, left: float, right: float) -> Solution:
-    """The flexure with its ends displaced in y; blocks are held in x and do not turn, eyes turn freely."""
+def driven(chain: Chain, left: float, right: float) -> dict[int, float]:
+    """What is prescribed when the ends are displaced in y; blocks are held in x and do not turn, eyes turn freely."""
     prescribed = {dof(chain.left, Y): left, dof(chain.right, Y): right}
     prescribed |= dict.fromkeys(chain.clamped(chain.left), 0.0)
     if chain.eye != chain.right:
         prescribed |= dict.fromkeys(chain.clamped(chain.right), 0.0)
         if chain.eye is not None:
             prescribed |= {dof(chain.eye, X): 0.0, dof(chain.eye, Y): 0.0}
-    return chain.frame.solve(prescribed)
+    return prescribed
+
+
+def deflect(chain: Chain, left: float, right: float) -> Solution:
+    """The flexure with its ends displaced in y (see ``driven``), by linear theory."""
+    return chain.frame.solve(driven(chain, left, right))
 
 
 @dataclass(frozen=True, slots=True)

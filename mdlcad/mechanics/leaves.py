@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
 from mdlcad.mechanics import flexure
+from mdlcad.mechanics.beam.large import LargeFrame
 from mdlcad.mechanics.flexure import Chain, Deflection, Meander, Sheet
+from mdlcad.mechanics.frame import Y, dof
 from mdlcad.mechanics.process import PlateRole, Process
 from mdlcad.mechanics.unit import UnitLaw
 
@@ -31,7 +33,11 @@ class LeafSize:
         coupling: stiffness between its two ends, N/mm (for a bias leaf, to the post).
         own: stiffness it adds to each end by itself (self term), N/mm.
         axial: stiffness in x, N/mm.
-        quartic: Q of 1/4 Q y^4, N/mm^3, y being the deflection.
+        quartic: Q of 1/4 Q d^4, N/mm^3, d being how far its ends are apart in y, so that its force at the worst
+            deflection is that of the large-displacement computation.
+        common: the same for a rocker whose ends move together: of 1/4 C (yl + yr)^4; 0 for the others.
+        skew: what a meander does otherwise upwards than downwards, N/mm^2: B of B (yl + yr) (yl - yr)^2 for a rocker,
+            of 1/3 B d^3 for a bias leaf; a coupler is the same both ways.
         strain, slope, eye_turn, clearance, sweep: at the worst deflection; see ``flexure.Deflection``.
         slot: how far the eye of a bias leaf is drawn in, mm: (least, most); (0, 0) for the others.
         misses: names of the limits that no candidate of the template keeps; empty if all is well.
@@ -44,6 +50,8 @@ class LeafSize:
     own: float
     axial: float
     quartic: float
+    common: float
+    skew: float
     strain: float
     slope: float
     eye_turn: float
@@ -108,7 +116,33 @@ def size_leaf(
                 break  # a thicker wall makes a longer leaf
     if best is None:
         raise ValueError(f"no meander of the process {process.name} has a stiffness of {stiffness} N/mm")
-    return best
+    return _with_quartic(best, cases, process)
+
+
+def _with_quartic(leaf: LeafSize, cases: tuple[tuple[float, float], ...], process: Process) -> LeafSize:
+    """``leaf`` with its quartic terms from the large-displacement computation at its largest deflections."""
+    chain = chain_of(leaf.kind, leaf.shape, process)
+    cuts = [4] * chain.flexible + [1] * (len(chain.frame.beams) - chain.flexible)
+    large = LargeFrame(chain.frame, cuts)
+    across = leaf.coupling if leaf.kind is LeafKind.ROCKER else -leaf.coupling
+    quartic = common = skew = most = 0.0
+    for left, right in cases:
+        together = left * right > 0.0
+        if not together and abs(left) <= most:
+            continue  # of a bias leaf's two ways, the farther
+        both = []
+        for way in (1.0, -1.0):
+            pose = large.move(large.rest(), flexure.driven(chain, way * left, way * right))
+            both.append(float(pose.reactions[dof(chain.left, Y)]) - way * (leaf.own * left + across * right))
+        odd, even = (both[0] - both[1]) / 2.0, (both[0] + both[1]) / 2.0
+        if together:
+            common = odd / (left + right) ** 3
+        else:
+            most = abs(left)
+            quartic, skew = odd / (left - right) ** 3, even / (left - right) ** 2
+    if leaf.kind is LeafKind.COUPLER:
+        skew = 0.0
+    return replace(leaf, quartic=trim(quartic), common=trim(common), skew=trim(skew))
 
 
 def _stiffness(kind: LeafKind, wall: float, legs: int, amplitude: float, process: Process) -> Callable[[float], float]:
@@ -136,7 +170,7 @@ def _examine(
     seen = [flexure.examine(chain, flexure.deflect(chain, *case)) for case in cases]
     # the shortening coefficient does not depend on the size of the deflection: take it at 1 mm
     one = flexure.examine(chain, flexure.deflect(chain, 1.0, 0.0))
-    quartic = 2.0 * axial * one.shortening**2
+    stiffening = 2.0 * axial * one.shortening**2  # an estimate, on the safe side
     worst = _worst(seen)
     slot = (0.0, 0.0)
     if kind is LeafKind.BIAS:
@@ -146,7 +180,7 @@ def _examine(
         "strain": worst.strain <= sheet.strain_limit,
         "slope": worst.slope <= link.slope_limit,
         "clearance": worst.clearance >= link.leg_gap,
-        "quartic": quartic <= link.quartic_limit * law.stiffness_unit / process.unit.throw_unit**2,
+        "quartic": stiffening <= link.quartic_limit * law.stiffness_unit / process.unit.throw_unit**2,
     }
     return LeafSize(
         kind=kind,
@@ -155,7 +189,9 @@ def _examine(
         coupling=trim(float(matrix[0, 1] if kind is LeafKind.ROCKER else matrix[0, 0])),
         own=trim(float(matrix[0, 0])),
         axial=trim(axial),
-        quartic=trim(quartic),
+        quartic=0.0,
+        common=0.0,
+        skew=0.0,
         strain=trim(worst.strain),
         slope=trim(worst.slope),
         eye_turn=trim(worst.eye),

@@ -105,11 +105,18 @@ def series_spring(process: Process, law: UnitLaw, row_pitch: float, k_least: flo
     )
 
 
-def _solve(process: Process, law: UnitLaw, wall: float, height: float, clear: float) -> tuple[float, float, float]:
-    """Stiffness (N/mm), strain per mm and turning stiffness of the end block (N mm/rad) of the spring's frame.
+@dataclass(frozen=True, slots=True)
+class SpringFrame:
+    """The spring's centre lines: node 0 is the end block, ``pin`` the clock block; width of each strained beam."""
 
-    The end block is free to turn and to move in y against the beams it ends.
-    """
+    nodes: list[tuple[float, float]]
+    beams: list[Beam]
+    widths: list[float]
+    pin: int
+
+
+def spring_frame(process: Process, wall: float, height: float, clear: float) -> SpringFrame:
+    """The folded spring as beams: first the strained ones (``widths``), then those taken as rigid."""
     unit, gap = process.unit, process.machine.min_gap
     plate = process.plates(PlateRole.UNIT)[0]
     material = process.material(plate)
@@ -137,13 +144,22 @@ def _solve(process: Process, law: UnitLaw, wall: float, height: float, clear: fl
             if truss:
                 parts.append((sheet.beam(truss[-1], foot + 2, unit.series_arm), unit.series_arm))
             truss.append(foot + 2)
+    return SpringFrame(nodes, [beam for beam, _ in parts] + stiff, [width for _, width in parts], stem[-1])
+
+
+def _solve(process: Process, law: UnitLaw, wall: float, height: float, clear: float) -> tuple[float, float, float]:
+    """Stiffness (N/mm), strain per mm and turning stiffness of the end block (N mm/rad) of the spring's frame.
+
+    The end block is free to turn and to move in y against the beams it ends.
+    """
+    made = spring_frame(process, wall, height, clear)
     # what the pair of beams holds the end block by (the shuttle at rest)
     springs = [Spring(dof(0, Y), law.beam_stiffness / 2.0), Spring(dof(0, TURN), law.shuttle_turn / 2.0)]
-    frame = Frame(nodes, [beam for beam, _ in parts] + stiff, springs)
-    pin = [dof(stem[-1], i) for i in (X, Y, TURN)]
+    frame = Frame(made.nodes, made.beams, springs)
+    pin = [dof(made.pin, i) for i in (X, Y, TURN)]
     solution = frame.solve(dict.fromkeys(pin, 0.0) | {dof(0, X): 1.0})
     strain = 0.0
-    for beam, width in parts:
+    for beam, width in zip(made.beams, made.widths, strict=False):  # the rigid ones have no width
         moment = max(abs(value) for value in frame.end_moments(beam, solution))
         strain = max(strain, moment * width / (2.0 * beam.bending))
     turning = float(frame.condense([dof(0, TURN)], pin)[0, 0])

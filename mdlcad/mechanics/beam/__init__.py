@@ -1,0 +1,1 @@
+"""The parts' reduced models held against a geometrically nonlinear beam computation of the same geometry."""

@@ -1,0 +1,177 @@
+"""A plane frame at large displacements and turns: corotational Euler-Bernoulli elements, Newton's method.
+
+The element is that of M. A. Crisfield, Non-linear Finite Element Analysis of Solids and Structures, vol. 1 (1991),
+chapter 7: a linear beam in axes that go with its chord. With chord length l, direction cosines c, s, elongation u and
+end turns a, b against the chord:
+
+    N = E A u / L,   Ma = E I (4 a + 2 b) / L,   Mb = E I (2 a + 4 b) / L,
+    forces = B' (N, Ma, Mb),   tangent = B' C B + N z z' / l + (Ma + Mb) (r z' + z r') / l^2.
+
+Long beams are cut into several elements. The motion is driven by prescribed displacements, in steps that are halved
+where Newton's method does not converge: so a force that falls (a beam that snaps through) is no obstacle.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csc_matrix
+from scipy.sparse.linalg import splu
+
+from mdlcad.mechanics.frame import Array, Beam, Frame
+
+_ITERATIONS = 25
+_HALVINGS = 12
+
+
+@dataclass(frozen=True, slots=True)
+class Pose:
+    """displacements and reactions, shape (3 nodes,): x, y and turn of each; reactions are 0 where nothing holds."""
+
+    displacements: Array
+    reactions: Array
+
+
+class LargeFrame:
+    """``frame`` with beam i cut into ``cuts[i]`` elements; the frame's own nodes and their numbers stay the first.
+
+    The frame's springs stay linear.
+    """
+
+    def __init__(self, frame: Frame, cuts: Sequence[int]):
+        nodes = [tuple(node) for node in frame.nodes]
+        elements: list[Beam] = []
+        self.part: list[int] = []
+        for index, (beam, count) in enumerate(zip(frame.beams, cuts, strict=True)):
+            ends = frame.nodes[[beam.start, beam.end]]
+            chain = [beam.start]
+            for cut in range(1, count):
+                chain.append(len(nodes))
+                nodes.append(tuple(ends[0] + (ends[1] - ends[0]) * cut / count))
+            chain.append(beam.end)
+            elements += [Beam(a, b, beam.axial, beam.bending) for a, b in pairwise(chain)]
+            self.part += [index] * count
+        self.size = 3 * len(nodes)
+        self._springs = frame.springs
+        self._nodes = np.array(nodes)
+        start, end = (np.array([getattr(e, name) for e in elements]) for name in ("start", "end"))
+        self._places = np.concatenate([3 * start[:, None] + np.arange(3), 3 * end[:, None] + np.arange(3)], axis=1)
+        self._start, self._end = start, end
+        self._axial = np.array([e.axial for e in elements])
+        self._bending = np.array([e.bending for e in elements])
+        chord = self._nodes[end] - self._nodes[start]
+        self._length = np.hypot(chord[:, 0], chord[:, 1])
+        self._cosine, self._sine = (chord / self._length[:, None]).T
+
+    def rest(self) -> Pose:
+        """Nothing moved."""
+        return Pose(np.zeros(self.size), np.zeros(self.size))
+
+    def move(self, pose: Pose, prescribed: Mapping[int, float]) -> Pose:
+        """The equilibrium nearby, with the degrees of freedom of ``prescribed`` at those displacements.
+
+        Raises:
+            ArithmeticError: no equilibrium was found that continues ``pose``.
+        """
+        held = np.array(sorted(prescribed), dtype=np.intp)
+        goal = np.array([prescribed[int(i)] for i in held])
+        free = np.setdiff1d(np.arange(self.size), held)
+        here, done, share, halvings = pose.displacements, 0.0, 1.0, 0
+        begin = here[held]
+        while done < 1.0:
+            share = min(share, 1.0 - done)
+            found = self._newton(here, held, free, begin + (done + share) * (goal - begin))
+            if found is None:
+                share, halvings = share / 2.0, halvings + 1
+                if halvings > _HALVINGS:
+                    raise ArithmeticError("the beams' equilibrium is lost: no force holds this position")
+                continue
+            here, done = found, done + share
+        return Pose(here, self._forces(here)[0])
+
+    def strains(self, pose: Pose, walls: Sequence[float]) -> Array:
+        """Largest strain of each beam of the frame, bending and stretching; ``walls`` are their thicknesses."""
+        stretch, moments = self._inner(pose.displacements)[:2]
+        wall = np.array(walls)[self.part]
+        bending = np.max(np.abs(moments), axis=0) * wall / (2.0 * self._bending)
+        strain = np.zeros(len(walls))
+        np.maximum.at(strain, self.part, bending + np.abs(stretch) / self._axial)
+        return strain
+
+    def line(self, pose: Pose) -> list[Array]:
+        """The two ends of every element where they are, shape (2, 2) each."""
+        now = self._nodes + pose.displacements.reshape(-1, 3)[:, :2]
+        return [now[[a, b]] for a, b in zip(self._start, self._end, strict=True)]
+
+    def _newton(self, from_here: Array, held: NDArray[np.intp], free: NDArray[np.intp], goal: Array) -> Array | None:
+        here = from_here.copy()
+        jump = goal - here[held]
+        for iteration in range(_ITERATIONS):
+            force, tangent = self._forces(here)
+            residual = force[free]
+            columns = csc_matrix(tangent)
+            if iteration == 0:
+                residual = residual + columns[free][:, held] @ jump
+                here[held] = goal
+            step = splu(columns[free][:, free]).solve(-residual)
+            if not np.all(np.isfinite(step)) or np.max(np.abs(step)) > 5.0:
+                return None
+            here[free] += step
+            if iteration and np.max(np.abs(step)) < 1e-9:
+                return here
+        return None
+
+    def _inner(self, q: Array) -> tuple[Array, Array, Array, Array, Array]:
+        """Stretching forces, end moments (2, m), chord lengths and direction cosines."""
+        at = q[self._places]
+        chord = np.stack([self._length * self._cosine, self._length * self._sine]) + (at[:, 3:5] - at[:, 0:2]).T
+        length = np.hypot(chord[0], chord[1])
+        cosine, sine = chord / length
+        turn = np.arctan2(sine * self._cosine - cosine * self._sine, cosine * self._cosine + sine * self._sine)
+        # elongation without the cancellation of length - self._length
+        elongation = (length**2 - self._length**2) / (length + self._length)
+        # against the chord, whose own turn is known only up to whole turns
+        a, b = (end - 2.0 * np.pi * np.round(end / (2.0 * np.pi)) for end in (at[:, 2] - turn, at[:, 5] - turn))
+        stiff = self._bending / self._length
+        return (
+            self._axial * elongation / self._length,
+            np.stack([stiff * (4.0 * a + 2.0 * b), stiff * (2.0 * a + 4.0 * b)]),
+            length,
+            cosine,
+            sine,
+        )
+
+    def _forces(self, q: Array) -> tuple[Array, csc_matrix]:
+        stretch, moments, length, c, s = self._inner(q)
+        zero, one = np.zeros_like(c), np.ones_like(c)
+        r = np.stack([-c, -s, zero, c, s, zero], axis=1)
+        z = np.stack([s, -c, zero, -s, c, zero], axis=1)
+        lean = -z / length[:, None]
+        first, second = lean.copy(), lean.copy()
+        first[:, 2] += one
+        second[:, 5] += one
+        rows = np.stack([r, first, second], axis=1)  # B, shape (m, 3, 6)
+        inner = np.stack([stretch, moments[0], moments[1]], axis=1)
+        elastic = np.zeros((len(c), 3, 3))
+        stiff = self._bending / self._length
+        elastic[:, 0, 0] = self._axial / self._length
+        elastic[:, 1, 1] = elastic[:, 2, 2] = 4.0 * stiff
+        elastic[:, 1, 2] = elastic[:, 2, 1] = 2.0 * stiff
+        local = np.einsum("mia,mij,mjb->mab", rows, elastic, rows)
+        local += (stretch / length)[:, None, None] * z[:, :, None] * z[:, None, :]
+        both = r[:, :, None] * z[:, None, :]
+        local += ((moments[0] + moments[1]) / length**2)[:, None, None] * (both + both.transpose(0, 2, 1))
+        force = np.zeros(self.size)
+        np.add.at(force, self._places, np.einsum("mia,mi->ma", rows, inner))
+        row = np.repeat(self._places, 6, axis=1).ravel()
+        column = np.tile(self._places, (1, 6)).ravel()
+        values = local.ravel()
+        for spring in self._springs:
+            force[spring.dof] += spring.stiffness * q[spring.dof]
+            row, column = np.append(row, spring.dof), np.append(column, spring.dof)
+            values = np.append(values, spring.stiffness)
+        return force, csc_matrix((values, (row, column)), shape=(self.size, self.size))
