@@ -37,5 +37,17 @@ class UsageError(Exception):
     """A command line, data file or build folder that cannot be used. Exit code 2, no traceback."""
 
 
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """A file that shows what went wrong: the end of its name ("jam.svg") and its bytes."""
+
+    name: str
+    data: bytes
+
+
 class SignoffError(Exception):
     """The input is fine, but what was made of it does not hold (wrong behaviour, illegal layout). Exit code 1."""
+
+    def __init__(self, message: str, picture: Picture | None = None) -> None:
+        self.picture = picture
+        super().__init__(message)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from mdlcad.cli.kinds import Commands, jobs, say, seed, verdict
+from mdlcad.cli.kinds import Commands, bed, jobs, length, say, seed, verdict
 
 
 def register(commands: Commands[argparse.ArgumentParser]) -> None:
@@ -18,6 +18,9 @@ def register(commands: Commands[argparse.ArgumentParser]) -> None:
     )
     build.add_argument("--process", default="pom_cut", metavar="NAME|PATH", help="fabrication process (%(default)s)")
     build.add_argument("--seed", type=seed, default=0, metavar="N", help="seed of everything random (%(default)s)")
+    extent = build.add_mutually_exclusive_group()
+    extent.add_argument("--pitch", type=length, metavar="MM", help="size of a grid unit (as small as can be routed)")
+    extent.add_argument("--fit", type=bed, metavar="WxH", help="largest size of the boundary in mm, either way round")
     build.add_argument("--from", dest="first", metavar="STAGE", help="take earlier artefacts from the folder")
     build.add_argument("--to", dest="last", metavar="STAGE", help="stop after this stage")
     build.add_argument("--jobs", type=jobs, default=2, metavar="N", help="processors to use (%(default)s)")
@@ -39,6 +42,7 @@ def _add_synthesis(group: argparse._ArgumentGroup) -> None:
 def _run(options: argparse.Namespace) -> int:
     from mdlcad.flow.build import Request, build
     from mdlcad.mapping import MappingRequest
+    from mdlcad.routing.driver import Size
 
     place, broken = build(
         Request(
@@ -58,6 +62,7 @@ def _run(options: argparse.Namespace) -> int:
             first=options.first,
             last=options.last,
             workers=options.jobs,
+            size=Size(options.pitch, options.fit),
         ),
         say,
     )

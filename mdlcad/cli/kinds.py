@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 import sys
 from pathlib import Path
 
@@ -17,6 +18,25 @@ def seed(text: str) -> int:
     if not 0 <= value < 2**31:
         raise argparse.ArgumentTypeError("a seed is a whole number from 0 to 2147483647")
     return value
+
+
+def length(text: str) -> float:
+    """A length in mm."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not 0.0 < value < 1e5:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a length in mm")
+    return value
+
+
+def bed(text: str) -> tuple[float, float]:
+    """A width and a height in mm, like 250x200."""
+    width, cross, height = text.lower().partition("x")
+    if not cross:
+        raise argparse.ArgumentTypeError(f"{text!r} is not WxH in mm, like 250x200")
+    return length(width), length(height)
 
 
 def jobs(text: str) -> int:

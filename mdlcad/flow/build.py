@@ -24,6 +24,7 @@ from mdlcad.placement.placement import Placement
 from mdlcad.proof.outcome import Proof
 from mdlcad.report.page import write_page
 from mdlcad.report.report import StageRecord, Stopped
+from mdlcad.routing.driver import SMALLEST, Size
 from mdlcad.routing.layout import Layout
 from mdlcad.synthesis.netlist import Netlist
 
@@ -56,6 +57,7 @@ class Request:
     first: str | None
     last: str | None
     workers: int
+    size: Size = SMALLEST
 
 
 def build(request: Request, say: Callable[[str], None]) -> tuple[Path, list[str]]:
@@ -84,7 +86,7 @@ def build(request: Request, say: Callable[[str], None]) -> tuple[Path, list[str]
     records: list[StageRecord] = []
     stopped: Stopped | None = None
     with new_folder(place) as folder:
-        job = Job(source, library, process, request.seed, folder, request.workers)
+        job = Job(source, library, process, request.seed, folder, request.workers, request.size)
         # what the build leans on goes with it, so that it can be signed off again elsewhere
         write_atomic(folder / "process.json", to_json(process))
         write_atomic(folder / CELLS_FILE, to_json(library))
@@ -101,7 +103,7 @@ def build(request: Request, say: Callable[[str], None]) -> tuple[Path, list[str]
             try:
                 state, record = _run(step, job, state, say)
             except SignoffError as problem:
-                stopped = Stopped(step.name, str(problem))
+                stopped = _stopped(step, problem, folder)
                 break
             records.append(record)
             stopped = _objection(step, state)
@@ -109,6 +111,14 @@ def build(request: Request, say: Callable[[str], None]) -> tuple[Path, list[str]
         write_atomic(folder / REPORT, to_json(report))
         write_page(folder)
     return place, list(report.failures)
+
+
+def _stopped(step: Step, problem: SignoffError, folder: Path) -> Stopped:
+    """Why the build ends at ``step``; the picture of it, if there is one, is kept in the folder."""
+    if problem.picture is None:
+        return Stopped(step.name, str(problem))
+    write_atomic(folder / problem.picture.name, problem.picture.data)
+    return Stopped(step.name, f"{problem}; {problem.picture.name} shows where")
 
 
 def _objection(step: Step, state: State) -> Stopped | None:

@@ -16,6 +16,7 @@ from mdlcad.parts.stiffness import CarrierStiffness
 from mdlcad.placement.placement import Placement
 from mdlcad.placement.unit_grid import GridPlacement
 from mdlcad.proof.outcome import Proof
+from mdlcad.routing.driver import SMALLEST, Size
 from mdlcad.routing.layout import Layout
 from mdlcad.signoff.lvs import LvsResult
 from mdlcad.signoff.summary import DesignRules
@@ -32,6 +33,7 @@ class Job:
         source: the MDL file; None if the build starts from the artefacts of a folder.
         folder: where this build writes; moved to its place when it is whole.
         workers: how many processors may be used; never changes a result.
+        size: how large the device may be.
     """
 
     source: Path | None
@@ -40,6 +42,7 @@ class Job:
     seed: int
     folder: Path
     workers: int
+    size: Size = SMALLEST
 
 
 @dataclass(frozen=True, slots=True)

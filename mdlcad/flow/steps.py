@@ -20,13 +20,16 @@ from mdlcad.mechanics import size
 from mdlcad.mechanics.drive import drive_loads
 from mdlcad.network.model import CouplingKind
 from mdlcad.parts import build_parts
-from mdlcad.parts.stiffness import carrier_stiffnesses
+from mdlcad.parts.stiffness import carrier_faults, carrier_stiffnesses
 from mdlcad.parts.store import Parts, records_of
+from mdlcad.placement.placement import Placement
 from mdlcad.placement.ports import PortPlace
 from mdlcad.proof.prove import prove
 from mdlcad.proof.reference import build_reference
 from mdlcad.routing import find_lack, place_and_route
 from mdlcad.routing.drawing import draw_layout
+from mdlcad.routing.judge import Objection
+from mdlcad.routing.layout import Layout
 from mdlcad.signoff.extraction import extract
 from mdlcad.signoff.geometry import check_geometry
 from mdlcad.signoff.lvs import compare, recover
@@ -101,19 +104,28 @@ def _size(job: Job, state: State, progress: Progress) -> State:
 
 
 def _place_and_route(job: Job, state: State, progress: Progress) -> State:
-    device, network, rules = need(state.device), need(state.network), need(state.sizing).rules
+    device, network, sizing = need(state.device), need(state.network), need(state.sizing)
     boundary, ports = tuple(line.start for line in device.boundary), port_places(device)
-    lack = find_lack(network, boundary, ports, rules)
+    lack = find_lack(network, boundary, ports, sizing.rules)
     if lack is not None:
         where = place_of(device, lack.bit) if lack.bit else device.boundary[0].where
         raise InputError([Diagnostic(device.file, where.line, where.column, lack.what, lack.mend)])
+    sources = {coupling.name: coupling.source for coupling in network.couplings}
+
+    def judge(placement: Placement, layout: Layout) -> tuple[Objection, ...]:
+        stiffnesses = carrier_stiffnesses(network, placement, layout, sizing, job.process)
+        faults = carrier_faults(stiffnesses, sizing, job.process)
+        return tuple(Objection(sources[fault.coupling], fault.coupling, fault.message) for fault in faults)
+
     placement, layout = place_and_route(
         network,
         boundary,
         ports,
-        rules,
+        sizing.rules,
         job.seed,
         progress,
+        judge,
+        job.size,
     )
     return replace(state, placement=placement, layout=layout)
 

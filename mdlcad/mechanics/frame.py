@@ -42,6 +42,15 @@ class Spring:
 
 
 @dataclass(frozen=True, slots=True)
+class Tie:
+    """A spring between two degrees of freedom of one direction (N/mm, or N mm/rad for a rotation): a pin's give."""
+
+    first: int
+    second: int
+    stiffness: float
+
+
+@dataclass(frozen=True, slots=True)
 class Solution:
     """displacements and reactions, shape (3 nodes,); reactions are 0 (to rounding) at free degrees of freedom."""
 
@@ -50,12 +59,19 @@ class Solution:
 
 
 class Frame:
-    """Nodes of shape (n, 2) in mm, joined by beams; every node must be held by a beam or a spring."""
+    """Nodes of shape (n, 2) in mm, joined by beams and ties; every node must be held by one of them or a spring."""
 
-    def __init__(self, nodes: Sequence[tuple[float, float]], beams: Sequence[Beam], springs: Sequence[Spring] = ()):
+    def __init__(
+        self,
+        nodes: Sequence[tuple[float, float]],
+        beams: Sequence[Beam],
+        springs: Sequence[Spring] = (),
+        ties: Sequence[Tie] = (),
+    ):
         self.nodes: Array = np.asarray(nodes, dtype=np.float64)
         self.beams = tuple(beams)
         self.springs = tuple(springs)
+        self.ties = tuple(ties)
 
     def matrix(self) -> Array:
         """Stiffness matrix, shape (3 n, 3 n), no supports applied."""
@@ -67,6 +83,9 @@ class Frame:
             total[np.ix_(places, places)] += turn.T @ _beam_matrix(self.length(beam), beam) @ turn
         for spring in self.springs:
             total[spring.dof, spring.dof] += spring.stiffness
+        for tie in self.ties:
+            ends = [tie.first, tie.second]
+            total[np.ix_(ends, ends)] += tie.stiffness * np.array([[1.0, -1.0], [-1.0, 1.0]])
         return total
 
     def solve(self, prescribed: Mapping[int, float], loads: Mapping[int, float] | None = None) -> Solution:

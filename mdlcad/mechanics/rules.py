@@ -5,6 +5,7 @@ These numbers are *results* of sizing (``mechanics``); nobody downstream chooses
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 
 
@@ -15,6 +16,9 @@ class LayoutRules:
     Attributes:
         unit_left, unit_right: reach of a unit's footprint in x from the hub's centre, frame rib included.
         column_pitch: distance between hub columns; at least unit_left + unit_right.
+        column_most: largest distance between hub columns at which a carrier to the next column is stiff enough.
+        near: couplings so stiff that a carrier to the next column would be too soft for them at any distance between
+            columns: their source and target share a column.
         row_pitch: distance between rows; two bodies in neighbouring rows may move towards each other.
         frame_width: width of the rim along the boundary polygon, inwards.
         gap: least distance of two bodies that move independently, at the worst of their strokes.
@@ -60,3 +64,5 @@ class LayoutRules:
     bias_offsets: dict[str, float] = field(default_factory=dict)
     eye_radius: float = 0.0
     bias_ends: dict[str, float] = field(default_factory=dict)
+    column_most: float = math.inf
+    near: tuple[str, ...] = ()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from statistics import median_low
 
 from mdlcad.errors import UsageError
 from mdlcad.mechanics.findings import Finding, findings_of
@@ -149,6 +150,32 @@ def _unit(mass: Mass, absorbed: float, peak: float, process: Process, law: UnitL
     )
 
 
+TURN_SHARE = 0.55
+"""Of what a carrier may give, so much to the shuttle's turning; the rest to bars and pins."""
+
+
+def turn_stiffness(law: UnitLaw, series: SeriesSpring) -> float:
+    """N mm/rad of a shuttle turning in the plane: its left beams end in the rib, its right ones in a sprung block."""
+    half = law.shuttle_turn / 2.0
+    return half + 1.0 / (1.0 / half + 1.0 / series.turn_stiffness)
+
+
+def _columns_apart(
+    process: Process, law: UnitLaw, series: SeriesSpring, couplers: tuple[CouplerSize, ...], hub_half: float
+) -> dict[str, float]:
+    """By coupling, the distance of columns at which its pull turns a source in the next column by the share of it.
+
+    A force F at an arm a turns the shuttle by F a / K and gives way by F a^2 / K; a coupler pulls at its middle, a
+    rocker in the middle of its half on the carrier's side.
+    """
+    apart = {}
+    for item in couplers:
+        give = TURN_SHARE / (process.link.carrier_ratio * item.leaf.own)
+        pull = item.leaf.reach * (0.75 if item.leaf.kind is LeafKind.ROCKER else 0.5)
+        apart[item.coupling] = _up(math.sqrt(give * turn_stiffness(law, series)) + hub_half + pull)
+    return apart
+
+
 def _rules(
     network: Network,
     process: Process,
@@ -169,10 +196,16 @@ def _rules(
     reach = {item.coupling: round(hub_half + item.leaf.reach, 6) for item in couplers}
     track = link.bar_width + link.gap
     channel = max(reach.values(), default=0.0) + hub_half + link.gap + link.bar_width
+    apart = _columns_apart(process, law, series, couplers, hub_half)
+    # what most couplings allow; the few stronger ones stay within a column
+    column_most = median_low(apart.values()) if apart else math.inf
+    pitch = max(_up(left + right), _up(channel + (link.channel_tracks - 1) * track))
     return LayoutRules(
         unit_left=left,
         unit_right=right,
-        column_pitch=max(_up(left + right), _up(channel + (link.channel_tracks - 1) * track)),
+        column_pitch=pitch,
+        column_most=column_most,
+        near=tuple(name for name, most in apart.items() if most < column_most),
         row_pitch=row_pitch,
         frame_width=process.frame.width,
         gap=link.gap,

@@ -1,23 +1,22 @@
-"""How stiff a carrier is where its couplers begin: rungs and trunks that bend, on a shuttle that can turn.
+"""How stiff a carrier is where its couplers begin: bars that bend, pins that bend and twist, a shuttle that can turn.
 
 Reads the placement and layout artefacts, so it is not part of sizing: the flow calls it once a layout exists.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
-from mdlcad.mechanics.findings import Finding
 from mdlcad.mechanics.flexure import RIGID, Sheet
-from mdlcad.mechanics.frame import TURN, Beam, Frame, Spring, X, Y, dof
+from mdlcad.mechanics.frame import TURN, Beam, Frame, Spring, Tie, X, Y, dof
 from mdlcad.mechanics.leaves import LeafKind, trim
 from mdlcad.mechanics.process import Plate, PlateRole, Process
 from mdlcad.mechanics.rules import LayoutRules
-from mdlcad.mechanics.sizing import Sizing
+from mdlcad.mechanics.sizing import Sizing, turn_stiffness
 from mdlcad.network.model import Network
 from mdlcad.placement.placement import Placement
 from mdlcad.routing.layout import EndKind, Layout, Rung, Trunk
@@ -25,19 +24,53 @@ from mdlcad.routing.layout import EndKind, Layout, Rung, Trunk
 
 @dataclass(frozen=True, slots=True)
 class CarrierStiffness:
-    """Stiffness of a carrier in y as one coupler feels it.
+    """Stiffness of a carrier in y as one coupler feels it, and how far the whole net tilts its shuttle.
 
     Attributes:
-        stiffness: N/mm, bars bending and the source's shuttle turning in the plane, the shuttle held in y.
+        stiffness: N/mm, of bars, hub pin, via pins and the source's shuttle turning in the plane; shuttle held in y.
         ratio: that over the coupler's own stiffness; the coupling is weakened by about 1 / (1 + ratio).
-        tilt_ratio: the same ratio for the shuttle tilting about x under the height of the rung plate, if no other
-            plate supported the carrier in z (plates slide on shims, so this is the worst case).
+        tilt: angle about x by which all couplers of the net together tilt its shuttle, rad, with source and targets at
+            opposite ends of the largest throws seen; the same for all couplers of a net.
     """
 
     coupling: str
     stiffness: float
     ratio: float
-    tilt_ratio: float
+    tilt: float
+
+
+@dataclass(frozen=True, slots=True)
+class CarrierFault:
+    """A carrier that misses a limit at one coupler: ``rule`` is carrier_stiffness or shuttle_tilt."""
+
+    rule: str
+    coupling: str
+    value: float
+    limit: float
+    message: str
+
+
+def carrier_faults(
+    stiffnesses: Sequence[CarrierStiffness], sizing: Sizing, process: Process
+) -> tuple[CarrierFault, ...]:
+    """Carriers that are too soft for their couplers, and nets that tilt their shuttle into its neighbours."""
+    least, most = process.link.carrier_ratio, tilt_limit(sizing, process)
+    found = []
+    for item in stiffnesses:
+        if item.ratio < least:
+            words = f"its carrier is {item.ratio:.1f} times as stiff as it is, {least:g} times is needed"
+            found.append(CarrierFault("carrier_stiffness", item.coupling, item.ratio, least, words))
+        if item.tilt > most:
+            words = (
+                f"with the net's other couplers it tilts its shuttle by {item.tilt:.3f} rad, {most:.3f} is the limit"
+            )
+            found.append(CarrierFault("shuttle_tilt", item.coupling, item.tilt, most, words))
+    return tuple(found)
+
+
+def tilt_limit(sizing: Sizing, process: Process) -> float:
+    """The angle, rad, at which a shuttle tilting about x meets the plates above and below it."""
+    return process.stack.z_gap / (sizing.law.shuttle_height / 2.0)
 
 
 def rung_width(rung: Rung, rules: LayoutRules) -> float:
@@ -55,14 +88,14 @@ def carrier_stiffnesses(
         ValueError: a carrier does not hang together.
     """
     parts = {item.coupling: item for item in sizing.couplers}
-    hub_x = {place.mass: place.x for place in placement.masses}
-    hub_y = {place.mass: place.y for place in placement.masses}
+    hubs = {place.mass: (place.x, place.y) for place in placement.masses}
     ends = {
         end.ref: (rung, end.x)
         for rung in layout.rungs
         for end in (rung.left, rung.right)
         if end.kind is EndKind.COUPLER
     }
+    tilts = _tilts(network, ends, sizing, process)
     found = []
     built: dict[str, _Carrier] = {}
     for coupling in network.couplings:
@@ -72,34 +105,39 @@ def carrier_stiffnesses(
         if net not in built:
             rungs = [rung for rung in layout.rungs if rung.net == net]
             trunks = [trunk for trunk in layout.trunks if trunk.net == net]
-            built[net] = _Carrier(net, (hub_x[net], hub_y[net]), rungs, trunks, sizing, process)
+            built[net] = _Carrier(net, hubs[net], rungs, trunks, sizing, process)
         rung, x = ends[coupling.name]
         leaf = parts[coupling.name].leaf
         # a leaf whose ends do not turn pulls at its middle; of a rocker, only the half up to the post
         arm = leaf.reach / (4.0 if leaf.kind is LeafKind.ROCKER else 2.0)
-        stiffness = built[net].stiffness_at(x, rung.y, arm if rung.right.ref == coupling.name else -arm)
-        unit, plate = process.plates(PlateRole.UNIT)[0], process.plate(rung.plate)
-        height = process.z_of(plate.name) + plate.thickness / 2.0 - process.z_of(unit.name) - unit.thickness / 2.0
-        tilt = sizing.law.shuttle_tilt / height**2
+        stiffness = built[net].stiffness_at(x, rung, arm if rung.right.ref == coupling.name else -arm)
         found.append(
-            CarrierStiffness(coupling.name, trim(stiffness), trim(stiffness / leaf.own), trim(tilt / leaf.own))
+            CarrierStiffness(coupling.name, trim(stiffness), trim(stiffness / leaf.own), trim(tilts[coupling.source]))
         )
     return tuple(found)
 
 
-def carrier_findings(stiffnesses: Sequence[CarrierStiffness], process: Process) -> tuple[Finding, ...]:
-    """Carriers that are too soft for the couplers they end in."""
-    limit = process.link.carrier_ratio
-    message = "its carrier is too soft for it: bring it closer to its trunk, or stiffen the bars"
-    return tuple(
-        Finding("carrier", f"coupler.{item.coupling}", item.ratio, limit, message)
-        for item in stiffnesses
-        if item.ratio < limit
-    )
+def _tilts(
+    network: Network, ends: Mapping[str, tuple[Rung, float]], sizing: Sizing, process: Process
+) -> dict[str, float]:
+    """Angle of every source's shuttle: the couplers' largest forces times their heights, over its stiffness."""
+    unit = process.plates(PlateRole.UNIT)[0]
+    parts = {item.coupling: item for item in sizing.couplers}
+    throws = {item.mass: item.amplitude for item in sizing.units}
+    tilts: dict[str, float] = {}
+    for coupling in network.couplings:
+        if coupling.name not in ends:
+            continue
+        plate = process.plate(ends[coupling.name][0].plate)
+        height = process.z_of(plate.name) + plate.thickness / 2.0 - process.z_of(unit.name) - unit.thickness / 2.0
+        leaf = parts[coupling.name].leaf
+        force = leaf.own * throws[coupling.source] + leaf.coupling * throws[coupling.target]
+        tilts[coupling.source] = tilts.get(coupling.source, 0.0) + force * height / sizing.law.shuttle_tilt
+    return tilts
 
 
 class _Carrier:
-    """The plane frame of one net; nodes are the places where bars meet or end."""
+    """The plane frame of one net; nodes are the places on a plate where bars meet, end, or are pinned."""
 
     def __init__(
         self,
@@ -110,29 +148,31 @@ class _Carrier:
         sizing: Sizing,
         process: Process,
     ) -> None:
-        self.net = net
+        self.net, self.hub, self.process, self.rules = net, hub, process, sizing.rules
         self.nodes: list[tuple[float, float]] = [hub]
-        self.places: dict[tuple[float, float], int] = {(round(hub[0], 4), round(hub[1], 4)): 0}
+        self.places: dict[tuple[float, float, str], int] = {}
         self.beams: list[Beam] = []
-        rules = sizing.rules
+        self.ties: list[Tie] = []
+        self.unit, self.trunk = process.plates(PlateRole.UNIT)[0], process.plates(PlateRole.TRUNK)[0]
         for rung in rungs:
-            width = rung_width(rung, rules)
-            sheet = _sheet(process, process.plate(rung.plate))
-            low = self._end(rung.left.x, rung.y, rung.left.kind, hub, rules.hub_half, sheet, width)
-            high = self._end(rung.right.x, rung.y, rung.right.kind, hub, -rules.hub_half, sheet, width)
+            sheet, width = _sheet(process, process.plate(rung.plate)), rung_width(rung, sizing.rules)
+            low = self._end(rung.left.x, rung, rung.left.kind, 1.0, sheet, width)
+            high = self._end(rung.right.x, rung, rung.right.kind, -1.0, sheet, width)
             self.beams.append(sheet.beam(low, high, width))
-        sheet = _sheet(process, process.plates(PlateRole.TRUNK)[0])
+        sheet = _sheet(process, self.trunk)
         for trunk in trunks:
             heights = sorted(
                 {r.y for r in rungs for e in (r.left, r.right) if e.kind is EndKind.VIA and e.ref == trunk.name}
             )
-            stops = [self._node(trunk.x, y) for y in heights]
-            self.beams += [sheet.beam(a, b, rules.bar_width) for a, b in pairwise(stops)]
-        self.frame = Frame(self.nodes, self.beams, [Spring(dof(0, TURN), sizing.law.shuttle_turn)])
+            stops = [self._node(trunk.x, y, self.trunk.name) for y in heights]
+            self.beams += [sheet.beam(a, b, sizing.rules.bar_width) for a, b in pairwise(stops)]
+        self.frame = Frame(
+            self.nodes, self.beams, [Spring(dof(0, TURN), turn_stiffness(sizing.law, sizing.series))], self.ties
+        )
 
-    def stiffness_at(self, x: float, y: float, arm: float) -> float:
-        """Stiffness in y, N/mm, of a point ``arm`` mm beyond the node at (x, y), rigidly joined to it."""
-        node = self.places[(round(x, 4), round(y, 4))]
+    def stiffness_at(self, x: float, rung: Rung, arm: float) -> float:
+        """Stiffness in y, N/mm, of a point ``arm`` mm beyond the end of ``rung`` at ``x``, rigidly joined to it."""
+        node = self.places[(round(x, 4), round(rung.y, 4), rung.plate)]
         supports = {dof(0, X): 0.0, dof(0, Y): 0.0}
         try:
             moved = self.frame.solve(supports, {dof(node, Y): 1.0, dof(node, TURN): arm}).displacements
@@ -140,21 +180,45 @@ class _Carrier:
             raise ValueError(f"the carrier of {self.net} does not hang together") from error
         return float(1.0 / (moved[dof(node, Y)] + arm * moved[dof(node, TURN)]))
 
-    def _node(self, x: float, y: float) -> int:
-        key = (round(x, 4), round(y, 4))
+    def _node(self, x: float, y: float, plate: str) -> int:
+        key = (round(x, 4), round(y, 4), plate)
         if key not in self.places:
-            self.places[key] = len(self.nodes)
-            self.nodes.append((x, y))
+            self.places[key] = self._free_node(x, y)
         return self.places[key]
 
-    def _end(
-        self, x: float, y: float, kind: EndKind, hub: tuple[float, float], block: float, sheet: Sheet, width: float
-    ) -> int:
-        """Node of a rung's end; at a hub, the block (``block`` mm wide, signed) is rigid."""
+    def _free_node(self, x: float, y: float) -> int:
+        self.nodes.append((x, y))
+        return len(self.nodes) - 1
+
+    def _pin(self, below: Plate, above: str, low: int, high: int) -> None:
+        """A square pin pressed into ``below`` at node ``low`` and into the plate ``above`` at ``high``.
+
+        Between them it is a cantilever, 3 E I / L^3, and a twisted bar, G J / L with J = 0.1406 side^4 (Saint-Venant,
+        square section; Young's tables) and G = E / 2.6.
+        """
+        length = self.process.z_of(above) - self.process.z_of(below.name) - below.thickness
+        modulus, side = self.process.materials[self.process.stack.pin_material].modulus, self.rules.pin
+        bend = 3.0 * modulus * side**4 / 12.0 / length**3
+        twist = modulus / 2.6 * 0.1406 * side**4 / length
+        for direction, stiffness in ((X, bend), (Y, bend), (TURN, twist)):
+            self.ties.append(Tie(dof(low, direction), dof(high, direction), stiffness))
+
+    def _end(self, x: float, rung: Rung, kind: EndKind, side: float, sheet: Sheet, width: float) -> int:
+        """Node of a rung's end; ``side`` is +1 if the rung begins on the right of a hub. Hub blocks are rigid."""
+        key = (round(x, 4), round(rung.y, 4), rung.plate)
+        if kind is EndKind.VIA:
+            known = key in self.places
+            node = self._node(x, rung.y, rung.plate)
+            if not known:
+                self._pin(self.trunk, rung.plate, self._node(x, rung.y, self.trunk.name), node)
+            return node
         if kind is not EndKind.HUB:
-            return self._node(x, y)
-        edge = self._node(hub[0] + block, y)
-        self.beams.append(sheet.beam(0, edge, width, RIGID))
+            return self._node(x, rung.y, rung.plate)
+        at = self.hub[0] + side * self.rules.hub_pin_offset
+        foot, head = self._free_node(at, rung.y), self._free_node(at, rung.y)
+        edge = self._free_node(self.hub[0] + side * self.rules.hub_half, rung.y)
+        self.beams += [sheet.beam(0, foot, width, RIGID), sheet.beam(head, edge, width, RIGID)]
+        self._pin(self.unit, rung.plate, foot, head)
         return edge
 
 

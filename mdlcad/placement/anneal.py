@@ -20,6 +20,8 @@ from mdlcad.placement.state import DEEP, State
 
 HARD = 12.0
 """Cost of one violated hard rule; a wire of one row costs WIRE."""
+SPAN = 3 * HARD
+"""Cost of a column too far: it is found at the start (``columns``), and hardly ever mended once lost."""
 WIRE = 0.06
 ORDER = 0.03
 
@@ -298,11 +300,12 @@ def _span(p: Problem, s: State, nets: Ints, n: int) -> float:
         mass = nets[k]
         column = p.slot[s.mass[mass, SLOT], 0]
         for i in range(p.mass[mass, 0], p.mass[mass + 1, 0]):
-            far += max(0, abs(p.slot[s.mass[p.coupling[p.outs[i], 1], SLOT], 0] - column) - 1)
+            link = p.coupling[p.outs[i]]
+            far += max(0, abs(p.slot[s.mass[link[1], SLOT], 0] - column) - link[3])
         for tab in range(p.mass[mass, 2], p.mass[mass + 1, 2]):
             if p.way[tab, column, 0] < 0:
                 far += p.way[tab, column, 2]
-    return HARD * far
+    return SPAN * far
 
 
 @numba.njit(cache=True, error_model="numpy")

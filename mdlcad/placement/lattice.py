@@ -71,9 +71,14 @@ def lattices(
         spare = x_high - x_low - rules.unit_left - rules.unit_right - (columns - 1) * least - RESOLUTION
         if spare < 0:
             continue
-        for order, share in enumerate((0.5, 0.0, 0.85)):
-            pitch = math.floor((least + share * spare / max(1, columns - 1)) / RESOLUTION + 1e-9)
-            margin = spare / 2 if columns == 1 else (1 - share) * spare / 2
+        pitches = dict.fromkeys(
+            math.floor(
+                max(least, min(least + share * spare / max(1, columns - 1), rules.column_most)) / RESOLUTION + 1e-9
+            )
+            for share in (0.5, 0.0, 0.85)
+        )
+        for order, pitch in enumerate(pitches):
+            margin = (spare - (columns - 1) * (pitch * RESOLUTION - least)) / 2
             first = math.ceil((x_low + rules.unit_left + margin) / RESOLUTION - 1e-9)
             column_x = tuple(round((first + column * pitch) * RESOLUTION, 6) for column in range(columns))
             best: tuple[tuple[float, ...], Lattice] | None = None

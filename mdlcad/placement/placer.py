@@ -10,9 +10,10 @@ import numpy as np
 from mdlcad.mechanics.rules import LayoutRules
 from mdlcad.network.model import Network
 from mdlcad.placement.anneal import anneal
+from mdlcad.placement.columns import choose_columns
 from mdlcad.placement.lattice import Lattice
 from mdlcad.placement.placement import PlacedMass, Placement
-from mdlcad.placement.problem import build, realisable
+from mdlcad.placement.problem import Problem, build, realisable
 from mdlcad.placement.state import start
 
 MOVES_PER_MASS = 8000
@@ -33,9 +34,7 @@ def place(
 ) -> PlaceResult:
     """Anneal ``network`` onto ``lattice``, which must have a slot for every mass. Same arguments, same result."""
     problem = build(network, lattice, rules)
-    slots = list(range(len(lattice.slots)))
-    random.Random(seed).shuffle(slots)
-    state, source = start(problem, np.array(slots[: len(network.masses)], np.int32), seed)
+    state, source = start(problem, np.array(_start(problem, lattice, len(network.masses), seed), np.int32), seed)
     cost = anneal(problem, state, source, moves_per_mass * len(network.masses), HOT, COLD, False)
     masses = []
     for index, mass in enumerate(network.masses):
@@ -52,6 +51,19 @@ def place(
         seed=seed,
     )
     return PlaceResult(placement, float(cost))
+
+
+def _start(problem: Problem, lattice: Lattice, masses: int, seed: int) -> list[int]:
+    """A slot for every mass: any of the column chosen for it, or any at all if no columns were found."""
+    slots = list(range(len(lattice.slots)))
+    random.Random(seed).shuffle(slots)
+    columns = choose_columns(problem, lattice, seed)
+    if columns is None:
+        return slots[:masses]
+    free: dict[int, list[int]] = {}
+    for slot in slots:
+        free.setdefault(lattice.slots[slot][0], []).append(slot)
+    return [free[column].pop() for column in columns]
 
 
 @dataclass(frozen=True, slots=True)

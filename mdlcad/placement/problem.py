@@ -24,7 +24,7 @@ class Problem(NamedTuple):
     """Few wide tables (the kernel's compile time grows with their number).
 
     Attributes:
-        coupling: (J, 3) source mass, target mass, whether it has a post.
+        coupling: (J, 4) source mass, target mass, whether it has a post, how many columns apart they may be.
         mass: (M + 1, 4) first entry in ``outs``, in ``ins``, in ``tab``; whether it has a bias leaf.
         outs: couplings by source. ins: driving masses by target.
         tab: (T, 4) lowest and highest row that its rung meets, row it lies in or -1, mass; ordered by mass.
@@ -67,6 +67,7 @@ def build(network: Network, lattice: Lattice, rules: LayoutRules) -> Problem:
     source = np.array([masses[c.source] for c in couplings], np.int32)
     target = np.array([masses[c.target] for c in couplings], np.int32)
     posted = np.array([c.name in rules.post_offset for c in couplings], np.int32)
+    apart = np.array([int(c.name not in rules.near) for c in couplings], np.int32)
     out_start, outs = _rows(source, len(masses))
     in_start, into = _rows(target, len(masses))
     tabs = sorted(lattice.tabs, key=lambda tab: masses[tab.mass])
@@ -78,7 +79,7 @@ def build(network: Network, lattice: Lattice, rules: LayoutRules) -> Problem:
     half = rules.bar_width / 2
     limits, is_open = _channels(lattice, rules)
     return Problem(
-        coupling=np.stack([source, target, posted], axis=1),
+        coupling=np.stack([source, target, posted, apart], axis=1),
         mass=np.stack([out_start, in_start, tab_start.astype(np.int32), biased], axis=1),
         outs=outs,
         ins=source[into],

@@ -22,6 +22,8 @@ FIRST_LIMIT = 8.0
 BEST_LIMIT = 0.4
 """CP-SAT's deterministic time for a first legal routing and for shortening its rungs."""
 
+LEVEL = units(5.0)
+"""A plate higher costs a carrier as much as so many counts of length."""
 
 LEAF_AND_TAB = ({Role.COUPLER, Role.TAB}, {Role.COUPLER, Role.STRAIGHT_TAB}, {Role.COUPLER, Role.GUEST})
 """Pairs of one net that must not run into each other: only flexures do not move as their carrier does."""
@@ -53,6 +55,9 @@ class _Model:
             self.model.add_exactly_one(row)
             if item.plate is not None:
                 self.model.add(row[item.plate] == 1)
+            if item.ceiling is not None:
+                for literal in row[item.ceiling + 1 :]:
+                    self.model.add(literal == 0)
         self.known: dict[tuple[str, str], Any] = {}
         self.edges = [self._edges(item) for item in channel.items]
         self._trunks()
@@ -161,11 +166,14 @@ class _Model:
             self._either(~mine, ~other, before, after)
 
     def length(self) -> Any:
-        """What to make small: the reach of couplers (twice) and of source rungs, counts."""
+        """What to make small: the reach of couplers (twice) and of source rungs, counts; and heights, which tilt."""
         terms = []
         for item, (left, right) in zip(self.channel.items, self.edges, strict=True):
             if item.trunk is not None:
                 terms.append((2 if item.role is Role.COUPLER else 1) * (right - left))
+        for item, row in zip(self.channel.items, self.plate, strict=True):
+            if item.role in (Role.COUPLER, Role.STRAIGHT, Role.SOURCE):
+                terms += [LEVEL * k * literal for k, literal in enumerate(row)]
         return sum(terms)
 
 
@@ -180,7 +188,7 @@ def solve(channel: Channel, rules: LayoutRules, seed: int) -> ChannelRoute | Non
     if solver.solve(model.model) not in (cp_model.OPTIMAL, cp_model.FEASIBLE):
         return None
     best = _read(model, solver)
-    if channel.trunks:
+    if channel.items:
         model.model.minimize(model.length())
         for variable, value in zip(model.x, best[0], strict=True):
             model.model.add_hint(variable, value)

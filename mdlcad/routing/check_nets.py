@@ -36,7 +36,7 @@ def _carriers(network: Network, placement: Placement, layout: Layout, hubs: dict
         if trunk.name in trunks:
             yield "carrier", f"two trunks are named {trunk.name}", trunk.x, trunk.y_low, (trunk.name,)
         trunks[trunk.name] = trunk
-    needing = {c.source for c in network.couplings if c.name not in dict(layout.unrealised)}
+    needing = {c.source for c in network.couplings}
     needing |= {port.mass for port in placement.ports}
     for net in sorted({*(r.net for r in layout.rungs), *(t.net for t in layout.trunks), *needing}):
         if net not in hubs:
@@ -88,10 +88,11 @@ def _couplers(network: Network, layout: Layout, hubs: dict[str, PlacedMass], rul
     leaves = Counter(leaf.coupling for leaf in layout.couplers)
     excused = dict(layout.unrealised)
     for coupling in network.couplings:
-        want = 0 if coupling.name in excused else 1
-        if leaves[coupling.name] != want:
+        # what the layout says it could not realise is no excuse
+        if leaves[coupling.name] != 1 or coupling.name in excused:
             hub = hubs[coupling.target]
-            words = f"coupling {coupling.name} has {leaves[coupling.name]} couplers, {want} wanted"
+            why = f" (the layout says: {excused[coupling.name]})" if coupling.name in excused else ""
+            words = f"coupling {coupling.name} has {leaves[coupling.name]} couplers, 1 wanted{why}"
             yield "coupler", words, hub.x, hub.y, (coupling.name,)
     for name in sorted({*leaves, *excused} - set(known)):
         yield "coupler", f"the network has no coupling {name}", 0.0, 0.0, (name,)

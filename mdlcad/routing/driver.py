@@ -8,15 +8,17 @@ from dataclasses import dataclass
 
 from shapely import Polygon
 
-from mdlcad.errors import SignoffError
+from mdlcad.errors import Picture, SignoffError
 from mdlcad.mechanics.rules import LayoutRules
 from mdlcad.network.model import Network
 from mdlcad.placement.anneal import HARD
 from mdlcad.placement.lattice import lattices, place_ports
 from mdlcad.placement.placement import Placement
-from mdlcad.placement.placer import place
+from mdlcad.placement.placer import PlaceResult, place
 from mdlcad.placement.ports import PortPlace
 from mdlcad.placement.room import Lack, lack_of_room
+from mdlcad.routing.jam import Jam, JamError, draw_jam
+from mdlcad.routing.judge import Judge, no_objection
 from mdlcad.routing.layout import Layout
 from mdlcad.routing.router import route
 
@@ -25,14 +27,40 @@ STEP = 1.06
 FINE = 4
 """Of this many parts of a step, those between the last scale that failed and the first that worked are tried too."""
 MOST_STEPS = 26
-SLACK = 1.1
+SLACK = 1.05
 """Slots a mass: with fewer, annealing has hardly room to move in."""
 SCREEN = 1500
 """Moves a mass of the short anneal that ranks the lattices of a scale."""
-HOPELESS = 5 * HARD
+HOPELESS = 9 * HARD
 """A short anneal that leaves more than this is not worth a full one."""
-FAR = 2 * HARD
+TOO_SOFT = 4
+"""After so many legal layouts with carriers that miss a limit, larger ones are not tried: carriers only grow longer."""
+FAR = 3 * HARD
 """A full anneal that leaves more than this is not worth another seed."""
+
+
+@dataclass(frozen=True, slots=True)
+class Size:
+    """How large the device may be.
+
+    Attributes:
+        pitch: mm per grid unit, exactly; None for as small as it can be routed.
+        fit: largest width and height of the boundary, mm, either way round; None for any.
+    """
+
+    pitch: float | None = None
+    fit: tuple[float, float] | None = None
+
+    def most(self, boundary: tuple[tuple[int, int], ...]) -> float:
+        """The largest scale, mm per grid unit, that it allows."""
+        if self.fit is None:
+            return math.inf
+        xs, ys = [x for x, _ in boundary], [y for _, y in boundary]
+        short, long = sorted((max(xs) - min(xs), max(ys) - min(ys)))
+        return min(min(self.fit) / short, max(self.fit) / long)
+
+
+SMALLEST = Size()
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,6 +81,8 @@ def place_and_route(
     rules: LayoutRules,
     seed: int,
     progress: Callable[[str], None] | None = None,
+    judge: Judge = no_objection,
+    size: Size = SMALLEST,
 ) -> tuple[Placement, Layout]:
     """Place and route at the smallest scale (mm per grid unit) that works. Same arguments, same result.
 
@@ -61,22 +91,31 @@ def place_and_route(
     Args:
         boundary: vertices on the grid, clockwise. ports: places in grid units.
         progress: called with one line for every scale tried.
+        judge: what a layout is held to besides its clearances.
 
     Raises:
-        SignoffError: no scale up to ``STEP ** MOST_STEPS`` times the least one works; says what was in the way.
+        SignoffError: no scale that ``size`` allows, up to ``STEP ** MOST_STEPS`` times the least one, works; it says
+            what was in the way, and has a picture of that.
     """
-    search = _Search(network, boundary, ports, rules, seed, progress or (lambda line: None))
-    scale = least_scale(network, boundary, rules)
+    search = _Search(network, boundary, ports, rules, seed, progress or (lambda line: None), judge)
+    if size.pitch is not None:
+        found = search.attempt(size.pitch, PATIENT)
+        return found if found is not None else search.give_up(f"at {size.pitch:g} mm per grid unit")
+    scale, most = least_scale(network, boundary, rules), size.most(boundary)
     for _ in range(MOST_STEPS):
-        found = search.attempt(scale, QUICK)
+        last = scale >= most
+        found = search.attempt(min(scale, most), PATIENT if last else QUICK)
         if found is not None:
             for k in range(1 - FINE, 0):
-                better = search.attempt(scale * STEP ** (k / FINE), PATIENT)
+                better = search.attempt(min(scale, most) * STEP ** (k / FINE), PATIENT)
                 if better is not None:
                     return better
             return found
+        if last or search.judged >= TOO_SOFT:
+            break
         scale *= STEP
-    raise SignoffError(f"could not place and route {network.design}: {search.reason}")
+    words = "" if size.fit is None else f"within {size.fit[0]:g} x {size.fit[1]:g} mm"
+    return search.give_up(words)
 
 
 def least_scale(network: Network, boundary: tuple[tuple[int, int], ...], rules: LayoutRules) -> float:
@@ -94,7 +133,14 @@ def find_lack(
 
 
 class _Search:
-    """One network in one boundary at varying scale. ``reason``: what was in the way at the last scale."""
+    """One network in one boundary at varying scale.
+
+    Attributes:
+        closest: the placement with the fewest conflicts so far.
+        empty: the boundary and ports at the last scale, nobody placed.
+        reason: what was in the way at the last scale.
+        judged: legal layouts that the judge objected to.
+    """
 
     def __init__(
         self,
@@ -104,36 +150,44 @@ class _Search:
         rules: LayoutRules,
         seed: int,
         progress: Callable[[str], None],
+        judge: Judge,
     ) -> None:
-        self.network, self.boundary, self.ports = network, boundary, ports
+        self.network, self.boundary, self.ports, self.judge = network, boundary, ports, judge
         self.rules, self.seed, self.progress = rules, seed, progress
-        self.reason = "no lattice with enough slots fits the boundary"
+        self.closest: PlaceResult | None = None
+        self.reason = ""
+        self.judged = 0
+        self.empty = Placement((), 0.0, (), (), (), (), (), seed)
 
     def attempt(self, scale: float, effort: _Effort) -> tuple[Placement, Layout] | None:
         """A placement and its layout at ``scale``, or None."""
-        scale = round(scale, 4)
+        scale = math.floor(scale * 1e4 + 1e-6) / 1e4
         placed = place_ports(self.network, self.ports, scale)
+        outline = tuple((round(x * scale, 6), round(y * scale, 6)) for x, y in self.boundary)
+        self.empty = Placement(outline, scale, (), (), (), (), placed, self.seed)
         need = math.ceil(SLACK * len(self.network.masses))
         choices = lattices(self.boundary, placed, self.rules, scale, need)
         if not choices:
+            self.reason = f"no lattice of {need} slots fits the boundary: a larger size would help"
             return None
-        screened = sorted(
-            (place(self.network, lattice, self.rules, self.seed, SCREEN).cost, index)
-            for index, lattice in enumerate(choices)
-        )
+        short = [place(self.network, lattice, self.rules, self.seed, SCREEN) for lattice in choices]
+        screened = sorted((result.cost, index) for index, result in enumerate(short))
+        self._remember(short[screened[0][1]])
         best = screened[0][0]
         for cost, index in screened[: effort.lattices]:
             for offset in range(effort.seeds if cost <= HOPELESS else 0):
                 result = place(self.network, choices[index], self.rules, self.seed + offset)
                 best = min(best, result.cost)
+                self._remember(result)
                 if result.cost > FAR:
                     break
                 if result.cost > 0:
                     continue
                 try:
-                    layout = route(self.network, result.placement, self.rules, self.seed + offset)
-                except SignoffError as error:
+                    layout = route(self.network, result.placement, self.rules, self.seed + offset, self.judge)
+                except JamError as error:
                     self.reason = str(error)
+                    self.judged += error.judged
                     continue
                 self.progress(f"{scale:.3f} mm per grid unit: routed")
                 return result.placement, layout
@@ -144,3 +198,23 @@ class _Search:
         else:
             self.progress(f"{scale:.3f} mm per grid unit: {self.reason}")
         return None
+
+    def _remember(self, result: PlaceResult) -> None:
+        if self.closest is None or result.cost < self.closest.cost:
+            self.closest = result
+
+    def give_up(self, where: str) -> tuple[Placement, Layout]:
+        """Route the best placement that was found, conflicts and all, to name what is in its way.
+
+        Raises:
+            SignoffError: unless that works after all.
+        """
+        jam = Jam(self.empty)
+        if self.closest is not None:
+            placement = self.closest.placement
+            try:
+                return placement, route(self.network, placement, self.rules, placement.seed, self.judge)
+            except JamError as error:
+                self.reason, jam = str(error), error.jam
+        words = f"could not place and route {self.network.design}{where and ' '}{where}: {self.reason}"
+        raise SignoffError(words, Picture("jam.svg", draw_jam(self.network, jam, self.rules, words)))

@@ -62,6 +62,7 @@ class Item:
         trunk: index of the trunk whose pin it needs at that trunk's centre, or None.
         post: where its fixed post stands (counts), or None.
         plate: index of the plate it must lie on (a tab that passes hub columns lies on one in several channels).
+        ceiling: index of the highest plate it may lie on, or None: higher, its pins would be too soft or tilt its hub.
         rises: (x_low, x_high, y_low, y_high) of a second rectangle on the same plate: a tab's vertical part.
     """
 
@@ -77,6 +78,7 @@ class Item:
     post: int | None = None
     bend: int | None = None
     plate: int | None = None
+    ceiling: int | None = None
     rises: tuple[int, int, float, float] | None = None
 
 

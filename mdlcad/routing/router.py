@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from shapely import Polygon
 
-from mdlcad.errors import SignoffError
 from mdlcad.mechanics.rules import LayoutRules
 from mdlcad.network.model import Network
 from mdlcad.placement.grid import inside, terminals
@@ -14,9 +13,13 @@ from mdlcad.placement.placer import choose_sides
 from mdlcad.routing.assemble import assemble
 from mdlcad.routing.channel import ChannelRoute, solve
 from mdlcad.routing.gather import channels
+from mdlcad.routing.jam import Jam, JamError
+from mdlcad.routing.judge import Judge, Objection, lowered, no_objection
 from mdlcad.routing.layout import Layout
 from mdlcad.routing.pieces import Channel
 
+ROUNDS = 8
+"""Times that a routing is tried again because of what its judge objects to."""
 SIDE_TRIES = 3
 """Choices of channel sides and bias sides to try on one placement."""
 
@@ -37,29 +40,51 @@ def lattice_of(placement: Placement, rules: LayoutRules) -> Lattice:
     )
 
 
-def route(network: Network, placement: Placement, rules: LayoutRules, seed: int) -> Layout:
+def route(network: Network, placement: Placement, rules: LayoutRules, seed: int, judge: Judge = no_objection) -> Layout:
     """Tracks and plates for every carrier, coupler, bias leaf and tab.
 
     Couplings that mechanics has no linkage for end in ``Layout.unrealised``.
 
     Raises:
-        SignoffError: a channel has no legal routing (or none was found); names the channel and its fullest nets.
+        JamError: a channel has no legal routing (or none was found), and then it names the channel and its fullest
+            nets; or none that the judge accepts, and then it names the coupling.
     """
     lattice = lattice_of(placement, rules)
-    reason = ""
+    jam = JamError(f"{network.design} has no channels", Jam(placement))
     for attempt in range(SIDE_TRIES):
         sides = choose_sides(network, placement, lattice, rules, seed + attempt)
         work = channels(network, placement, lattice, sides, rules, attempt)
-        routes: list[ChannelRoute] = []
-        for channel in work:
-            found = solve(channel, rules, seed)
-            if found is None:
-                reason = _complaint(channel, placement)
-                break
-            routes.append(found)
-        else:
-            return assemble(network, placement, lattice, work, routes, rules, seed)
-    raise SignoffError(reason)
+        routes: dict[int, ChannelRoute] = {}
+        again = set(range(len(work)))
+        for _ in range(ROUNDS):
+            for index in sorted(again):
+                found = solve(work[index], rules, seed)
+                if found is None:
+                    jam = JamError(_complaint(work[index], placement), Jam(placement, work[index]))
+                    break
+                routes[index] = found
+            else:
+                found_routes = [routes[index] for index in range(len(work))]
+                layout = assemble(network, placement, lattice, work, found_routes, rules, seed)
+                objections = judge(placement, layout)
+                if not objections:
+                    return layout
+                jam = _objected(objections[0], placement, work)
+                lower = lowered(work, [found.plates for found in found_routes], objections)
+                if lower is not None:
+                    again = lower
+                    continue
+            break
+    raise jam
+
+
+def _objected(objection: Objection, placement: Placement, work: tuple[Channel, ...]) -> JamError:
+    found = (channel for channel in work if any(item.ref == objection.coupling for item in channel.items))
+    words = (
+        f"coupling {objection.coupling}: {objection.message}. A smaller size (shorter arms), a lower fan-out of "
+        f"{objection.net}, or a deeper unit plate would help"
+    )
+    return JamError(words, Jam(placement, next(found, None)), judged=True)
 
 
 def _complaint(channel: Channel, placement: Placement) -> str:
@@ -72,11 +97,12 @@ def _complaint(channel: Channel, placement: Placement) -> str:
         else f"between columns {channel.index - 1} and {channel.index}"
     )
     if channel.trouble:
-        return f"channel {channel.index} ({where}): {'; '.join(channel.trouble)}"
+        words = "; ".join(channel.trouble[:3])
+        return f"channel {channel.index} ({where}): {words}. A larger size or more columns would help"
     tallest = sorted(channel.trunks, key=lambda t: (t.y_low - t.y_high, t.net))[:4]
     nets = ", ".join(trunk.net for trunk in tallest)
     return (
         f"channel {channel.index} ({where}) cannot hold its {len(channel.trunks)} trunks with their "
         f"{len(channel.items)} items; its longest nets are {nets}. "
-        "A larger scale, another seed or a lower fan-out would help"
+        "A larger size, more columns, one more rung plate or another seed would help"
     )

@@ -11,16 +11,14 @@ from mdlcad.mechanics import Process, Sizing
 from mdlcad.network.model import Network
 from mdlcad.parts.body import Body
 from mdlcad.parts.plates import plates_of
-from mdlcad.parts.stiffness import CarrierStiffness
+from mdlcad.parts.stiffness import CarrierStiffness, carrier_faults
 from mdlcad.placement.placement import Placement
 from mdlcad.routing.check import check_layout
 from mdlcad.routing.layout import Layout
 from mdlcad.signoff.drc import RULES, Finding, check_bed, check_containment, check_cut, check_motion
 from mdlcad.signoff.summary import DesignRules
 
-# Rules that measure how well the parts work rather than whether they can be made and move. They are reported with
-# their numbers; the layout stays legal, and a stiffer or thicker sheet in the process mends them.
-WARNED = ("carrier_stiffness",)
+CARRIER_RULES = ("carrier_stiffness", "shuttle_tilt")
 
 
 def check_geometry(
@@ -52,25 +50,16 @@ def check_geometry(
     ]
     findings += _of_sizing(sizing, where)
     targets = {coupling.name: coupling.target for coupling in network.couplings}
-    findings += [
-        Finding(
-            "carrier_stiffness",
-            (f"coupler.{item.coupling}",),
-            *where[targets[item.coupling]],
-            item.ratio,
-            process.link.carrier_ratio,
-            f"its carrier is {item.ratio:.1f} times as stiff as it is, {process.link.carrier_ratio:g} times is needed",
-        )
-        for item in carriers
-        if item.ratio < process.link.carrier_ratio
-    ]
+    for fault in carrier_faults(carriers, sizing, process):
+        names, place = (f"coupler.{fault.coupling}",), where[targets[fault.coupling]]
+        findings.append(Finding(fault.rule, names, *place, fault.value, fault.limit, fault.message))
     findings += [
         Finding("unrealised_coupling", (name,), *where[targets.get(name, name)], 1.0, 0.0, reason)
         for name, reason in layout.unrealised
     ]
-    ran = sorted({*RULES, *WARNED, *(item.rule for item in findings)})
+    ran = sorted({*RULES, *CARRIER_RULES, *(item.rule for item in findings)})
     counts = {rule: sum(item.rule == rule for item in findings) for rule in ran}
-    return DesignRules(counts, tuple(findings), WARNED)
+    return DesignRules(counts, tuple(findings), ())
 
 
 def _of_sizing(sizing: Sizing, where: dict[str, tuple[float, float]]) -> list[Finding]:

@@ -13,7 +13,7 @@ from mdlcad.cli import FAILS, HOLDS, UNUSABLE, main
 
 ROOT = Path(__file__).resolve().parents[2]
 VOTER = ROOT / "examples" / "voter.mdl"
-PLATES = ["base", "shims", "clock-2", "clock-1", "clock-0", "unit", "V", "H0", "H1", "H2", "H3", "cover"]
+PLATES = ["base", "shims", "clock-2", "clock-1", "clock-0", "unit", "V", "H0", "H1", "H2", "cover"]
 
 
 @pytest.fixture
@@ -43,7 +43,7 @@ def test_the_report_has_the_contract_s_keys_and_says_that_all_holds(built):
     assert found["extracted"] == found["behaviour"]
     assert found["lvs"] == {"matched": True, "differences": []}
     assert found["drc"]["unrealised_coupling"] == 0
-    assert all(count == 0 for rule, count in found["drc"].items() if rule != "carrier_stiffness")
+    assert all(count == 0 for count in found["drc"].values())
     assert found["plates"] == PLATES
     assert len(found["extent_mm"]) == 3
     assert all(len(stage["checksum"]) == 64 for stage in found["stages"])

@@ -209,8 +209,14 @@ def test_a_throw_too_large_for_the_rows_is_caught():
     assert "clearance" in {item.rule for item in found}
 
 
-def test_an_excused_coupling_needs_no_coupler_but_may_not_have_one():
+def test_what_the_layout_says_it_left_out_is_still_missing():
+    """The layout's own list of what it could not realise excuses nothing."""
     network, rules, placement, layout = good()
     name = layout.couplers[0].coupling
-    found = check_layout(network, placement, replace(layout, unrealised=((name, "reason"),)), rules)
-    assert "coupler" in {item.rule for item in found}
+    named = check_layout(network, placement, replace(layout, unrealised=((name, "no room"),)), rules)
+    assert [(item.rule, item.names) for item in named] == [("coupler", (name,))]
+    assert "no room" in named[0].message
+    without = replace(layout, couplers=layout.couplers[1:], unrealised=((name, "no room"),))
+    assert ("coupler", (name,)) in {
+        (item.rule, item.names) for item in check_layout(network, placement, without, rules)
+    }

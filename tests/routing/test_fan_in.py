@@ -32,11 +32,16 @@ def test_a_huge_fan_in_is_owned_up_to_with_its_hub() -> None:
     }
     assert len(layout.unrealised) == DRIVERS - room
     assert all(f"hub of g0 holds at most {room}" in reason for _, reason in layout.unrealised)
-    assert check_layout(network, placement, layout, rules) == ()
+    found = check_layout(network, placement, layout, rules)
+    left_out = {name for name, _ in layout.unrealised}
+    assert {item.names[0] for item in found if item.rule == "coupler"} == left_out
+    assert {item.names[0] for item in found if item.rule != "coupler"} <= {name.partition("->")[0] for name in left_out}
 
 
 @pytest.mark.parametrize("boundary", [((0, 0), (0, 1), (400, 1), (400, 0)), ((0, 0), (0, 400), (1, 400), (1, 0))])
 def test_a_sliver_of_a_boundary_is_refused_and_the_reason_told(boundary: tuple[tuple[int, int], ...]) -> None:
     network = star()
-    with pytest.raises(SignoffError, match=r"star: no lattice with enough slots fits the boundary"):
+    with pytest.raises(SignoffError, match=r"star: no lattice of 21 slots fits the boundary") as caught:
         place_and_route(network, boundary, (), pom_rules(network), 1)
+    assert caught.value.picture is not None
+    assert b"<svg" in caught.value.picture.data

@@ -1,0 +1,66 @@
+"""Which column every mass stands in: a small exact problem, solved before annealing looks for the rows.
+
+A coupling reaches the next column at most, and a column holds as many masses as it has slots; annealing from a random
+start hardly ever mends a mass two columns away from another, because the whole chain behind it would have to move.
+CP-SAT does, and keeps the number of trunks small and even over the channels.
+"""
+
+from __future__ import annotations
+
+from ortools.sat.python import cp_model
+
+from mdlcad.placement.lattice import Lattice
+from mdlcad.placement.problem import Problem
+
+LIMIT = 0.2
+"""CP-SAT's deterministic time."""
+MOST_MASSES = 400
+"""Above this the problem is not small any more."""
+PASSED = 3
+"""A hub column that a tab passes takes the room of so many trunks."""
+
+
+def choose_columns(problem: Problem, lattice: Lattice, seed: int) -> tuple[int, ...] | None:
+    """A column for every mass; None if there is no way, none was found in the limit, or the network is too large."""
+    masses, columns = len(problem.mass) - 1, len(lattice.column_x)
+    if masses > MOST_MASSES:
+        return None
+    model = cp_model.CpModel()
+    at = [[model.new_bool_var(f"at{mass}.{column}") for column in range(columns)] for mass in range(masses)]
+    trunk = [[model.new_bool_var(f"trunk{mass}.{k}") for k in range(columns + 1)] for mass in range(masses)]
+    for row in at:
+        model.add_exactly_one(row)
+    for column in range(columns):
+        room = sum(1 for slot in lattice.slots if slot[0] == column)
+        model.add(sum(row[column] for row in at) <= room)
+    for source, target, _, reach in problem.coupling.tolist():
+        for a in range(columns):
+            for b in range(columns):
+                apart = [~at[source][a], ~at[target][b]]
+                if a == b:
+                    model.add_bool_or([*apart, trunk[source][a], trunk[source][a + 1]])
+                elif abs(a - b) <= reach:
+                    model.add_bool_or([*apart, trunk[source][max(a, b)]])
+                else:
+                    model.add_bool_or(apart)
+    passed = []
+    for tab, ways in zip(problem.tab, problem.way, strict=True):
+        mass = int(tab[3])
+        for column, (channel, first, last, _) in enumerate(ways.tolist()):
+            if channel < 0:
+                model.add(at[mass][column] == 0)
+                continue
+            model.add_implication(at[mass][column], trunk[mass][channel])
+            passed.append(PASSED * max(0, last - first + 1) * at[mass][column])
+    most = model.new_int_var(0, masses, "most")
+    loads = [sum(row[k] for row in trunk) for k in range(columns + 1)]
+    for load in loads:
+        model.add(load <= most)
+    model.minimize(sum(loads) + 2 * most + sum(passed))
+    solver = cp_model.CpSolver()
+    solver.parameters.num_workers = 1
+    solver.parameters.random_seed = seed
+    solver.parameters.max_deterministic_time = LIMIT
+    if solver.solve(model) not in (cp_model.OPTIMAL, cp_model.FEASIBLE):
+        return None
+    return tuple(next(c for c, literal in enumerate(row) if solver.boolean_value(literal)) for row in at)
