@@ -150,7 +150,7 @@ def _unit(mass: Mass, absorbed: float, peak: float, process: Process, law: UnitL
     )
 
 
-TURN_SHARE = 0.55
+TURN_SHARE = 0.45
 """Of what a carrier may give, so much to the shuttle's turning; the rest to bars and pins."""
 
 

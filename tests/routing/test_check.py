@@ -1,5 +1,6 @@
 """The checker passes what the router makes and catches every seeded fault by its rule."""
 
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -87,9 +88,14 @@ def rung_over_post(placement: Placement, layout: Layout) -> Made:
 
 def crossing_rung(placement: Placement, layout: Layout) -> Made:
     """A bar stretched over the next hub."""
-    i = first(layout.rungs, lambda rung: rung.right.kind is EndKind.VIA)
+    i, hub_x = next(
+        (i, unit.x)
+        for i, rung in enumerate(layout.rungs)
+        for unit in placement.masses
+        if rung.right.kind is EndKind.VIA and unit.y == rung.y and unit.x > rung.right.x and unit.mass != rung.net
+    )
     rung = layout.rungs[i]
-    far = replace(rung.right, x=rung.right.x + 60.0)
+    far = replace(rung.right, x=hub_x + 10.0)
     return placement, replace(layout, rungs=swap(layout.rungs, i, replace(rung, right=far)))
 
 
@@ -191,8 +197,10 @@ def test_a_seeded_fault_is_caught(fault: Callable[[Placement, Layout], Made]):
 
 def test_a_leaf_that_runs_into_its_own_carrier_is_caught():
     network, rules, placement, layout = good()
-    leaf = layout.couplers[0]
-    source = next(c.source for c in network.couplings if c.name == leaf.coupling)
+    sources = {coupling.name: coupling.source for coupling in network.couplings}
+    rungs_of = Counter(rung.net for rung in layout.rungs)
+    leaf = next(leaf for leaf in layout.couplers if rungs_of[sources[leaf.coupling]] > 1)
+    source = sources[leaf.coupling]
     low, high = sorted((leaf.start_x, leaf.start_x + (6 if leaf.side is Side.LEFT else -6)))
     i = first(layout.rungs, lambda rung: rung.net == source and leaf.coupling not in (rung.left.ref, rung.right.ref))
     rung = layout.rungs[i]
