@@ -47,9 +47,10 @@ def draw_jam(network: Network, jam: Jam, rules: LayoutRules, message: str) -> by
     """The picture as SVG, 1 mm a user unit, y up. Same input, same bytes."""
     placement = jam.placement
     xs, ys = [x for x, _ in placement.boundary], [y for _, y in placement.boundary]
-    width = max(xs) - min(xs) + 2 * MARGIN
-    lines = _wrapped(f"{network.design}: {message}", width - 8.0)
-    left, top = min(xs) - MARGIN, max(ys) + MARGIN + 1.5 * HEADING * len(lines)
+    aside = MARGIN + max((text_width(port.bit, NAME) for port in placement.ports), default=0.0)
+    width = max(xs) - min(xs) + 2 * aside
+    lines = _wrapped(message, width - 8.0)
+    left, top = min(xs) - aside, max(ys) + MARGIN + 1.5 * HEADING * len(lines)
     pen = Pen(left, top)
     for index, line in enumerate(lines):
         style = f'class="lh" font-size="{number(HEADING)}"'

@@ -7,7 +7,7 @@ from xml.etree import ElementTree
 import pytest
 
 from mdlcad.routing.driver import Size
-from mdlcad.routing.jam import Jam, draw_jam
+from mdlcad.routing.jam import MARGIN, Jam, draw_jam
 from mdlcad.routing.pieces import Channel, Edge, Item, Role, TrunkPiece
 from tests.parts.device import small_device
 
@@ -27,7 +27,7 @@ def test_the_picture_shows_the_full_channel_with_what_it_was_to_hold() -> None:
     titles = [title.text for title in root.iter(f"{SVG}title")]
     assert {"channel 1", "trunk of m0", "trunk of m1", "coupler m0->m3 of m0"} <= set(titles)
     box = next(rect for rect in root.iter(f"{SVG}rect") if rect.get("class") == "jc")
-    left = float(box.get("x", "0")) - 14.0
+    left = float(box.get("x", "0")) - MARGIN
     assert left == pytest.approx(placement.column_x[0] + rules.hub_half, abs=0.01)
     assert float(box.get("width", "0")) == pytest.approx(rules.column_pitch - 2 * rules.hub_half, abs=0.01)
     assert "cannot hold <all>" in " ".join(text.text or "" for text in root.iter(f"{SVG}text"))
