@@ -71,7 +71,7 @@ class _Effort:
     seeds: int
 
 
-QUICK, PATIENT = _Effort(1, 1), _Effort(2, 2)
+QUICK, PATIENT = _Effort(2, 1), _Effort(2, 2)
 
 
 def place_and_route(
