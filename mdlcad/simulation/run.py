@@ -22,6 +22,9 @@ _STEP_LIMIT = 0.5
 # Below this many lanes, one lane after the other is faster than a block padded to BLOCK lanes.
 _SINGLES = 4
 
+# From this many masses on, a block no longer fits the processor's cache, and one lane after the other is faster.
+_CACHED = 15_000
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Stimulus:
@@ -108,7 +111,7 @@ def simulate(
     watch = watch or Watch(np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64))
     _check(system, stimulus, watch, steps, steps_per_period)
     n = len(system.names)
-    blocks = _blocks(lanes)
+    blocks = _blocks(lanes, n)
     # The last block may be padded with undriven lanes, which are dropped at the end.
     padded = blocks[-1][0] + blocks[-1][1]
     force = np.zeros((stimulus.force.shape[0], stimulus.force.shape[1], padded))
@@ -155,8 +158,10 @@ def simulate(
     return Run(readings[:, :, :lanes], trace[:, :, :lanes], peak[:, :lanes], x[:, :lanes], v[:, :lanes])
 
 
-def _blocks(lanes: int) -> list[tuple[int, int]]:
+def _blocks(lanes: int, masses: int) -> list[tuple[int, int]]:
     """(first lane, width) of blocks that cover ``lanes`` lanes; the last may reach beyond."""
+    if masses >= _CACHED:
+        return [(lane, 1) for lane in range(lanes)]
     whole = lanes - lanes % BLOCK
     blocks = [(start, BLOCK) for start in range(0, whole, BLOCK)]
     rest = lanes - whole
