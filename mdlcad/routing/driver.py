@@ -22,18 +22,18 @@ from mdlcad.routing.judge import Judge, no_objection
 from mdlcad.routing.layout import Layout
 from mdlcad.routing.router import route
 
-STEP = 1.06
+STEP = 1.03
 """Ratio of one scale to the next while looking for a first that works."""
-FINE = 4
+FINE = 2
 """Of this many parts of a step, those between the last scale that failed and the first that worked are tried too."""
-MOST_STEPS = 26
+MOST_STEPS = 52
 SLACK = 1.05
 """Slots a mass: with fewer, annealing has hardly room to move in."""
 SCREEN = 1500
 """Moves a mass of the short anneal that ranks the lattices of a scale."""
 HOPELESS = 9 * HARD
 """A short anneal that leaves more than this is not worth a full one."""
-TOO_SOFT = 4
+TOO_SOFT = 8
 """After so many legal layouts with carriers that miss a limit, larger ones are not tried: carriers only grow longer."""
 FAR = 3 * HARD
 """A full anneal that leaves more than this is not worth another seed."""
@@ -71,7 +71,7 @@ class _Effort:
     seeds: int
 
 
-QUICK, PATIENT = _Effort(2, 1), _Effort(2, 2)
+QUICK, PATIENT = _Effort(2, 2), _Effort(2, 3)
 
 
 def place_and_route(
