@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
+import shapely
 from shapely import Polygon
 
 from mdlcad.parts import palette
 from mdlcad.parts.body import Body, BodyKind
 from mdlcad.parts.leaf import hub_block
-from mdlcad.parts.shapes import box, cut, join, only, pieces, square, strip
+from mdlcad.parts.shapes import GRID, box, cut, join, only, pieces, slits, square, strip
 from mdlcad.parts.stack import Hub, Stack, mass_ref
 from mdlcad.parts.stiffness import rung_width
 from mdlcad.parts.unit import hub_pin_x
@@ -97,8 +98,8 @@ def tab_body(stack: Stack, tab: Tab, carriers: Sequence[Body], rungs: Sequence[R
         # the rung ends in the tab's centre line: fill the corner
         path[0] = (x0, y0 - (rules.bar_width / 2.0 if y1 > y0 else -rules.bar_width / 2.0))
     ref = mass_ref(tab.net)
-    own = [body.section for body in carriers if body.plate == tab.plate and body.moves_with == (ref,)]
-    own += [
+    beside = [body.section for body in carriers if body.plate == tab.plate and body.moves_with == (ref,)]
+    own = beside + [
         square(end.x, rung.y, rules.pin)
         for rung in rungs
         if rung.net == tab.net
@@ -108,8 +109,14 @@ def tab_body(stack: Stack, tab: Tab, carriers: Sequence[Body], rungs: Sequence[R
     left = pieces(cut(strip(path, rules.bar_width), own))
     if len(left) != 1:
         raise ValueError(f"tab {tab.bit}: its carrier leaves {len(left)} pieces of it")
+    section = left[0]
+    if beside:
+        # between a tab and the wide part of its own rung: material, since a slit that narrow cannot be cut
+        narrow = slits(section, shapely.union_all(beside, grid_size=GRID), stack.process.machine.min_gap)
+        section = only(join([section, *(piece.buffer(2.0 * GRID, join_style="mitre") for piece in narrow)]))
+        section = only(cut(section, own))
     throw = (0.0, rules.throw)
-    return stack.sheet(f"tab.{tab.bit}", BodyKind.TAB, tab.plate, left[0], throw, (ref,), palette.TAB)
+    return stack.sheet(f"tab.{tab.bit}", BodyKind.TAB, tab.plate, section, throw, (ref,), palette.TAB)
 
 
 def tab_notch(stack: Stack, tab: Tab) -> list[Polygon]:

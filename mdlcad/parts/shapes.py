@@ -58,6 +58,16 @@ def without_thin(shape: Geometry, wall: float) -> Geometry:
     return shapely.intersection(shape, opened, grid_size=GRID)
 
 
+def slits(shape: Geometry, beside: Geometry, gap: float) -> list[Polygon]:
+    """What is narrower than ``gap`` between two shapes of one rigid body: a slit that no cutter can leave open."""
+    both = shapely.union_all([_snap(shape), _snap(beside)], grid_size=GRID)
+    half = gap / 2.0
+    closed = both.buffer(half, join_style="mitre").buffer(-half - GRID, join_style="mitre")
+    found = pieces(shapely.difference(closed, both, grid_size=GRID))
+    # corners leave crumbs of the rounding
+    return [piece for piece in found if piece.area > gap * gap / 4.0]
+
+
 def only(shape: Geometry) -> Polygon:
     """The one polygon of a shape, tidied: no needless vertices, oriented, starting at its least vertex.
 

@@ -51,6 +51,7 @@ def test_a_verilog_error_is_at_its_line_of_the_program(tmp_path, capsys):
         (["check", "nowhere.mdl"], "nowhere.mdl"),
         (["build", str(MAZE), "--to", "nonsense"], "no such stage"),
         (["build", str(MAZE), "--from", "layout", "--to", "device"], "nothing to do"),
+        (["build", str(MAZE), "--from", "layout"], "is made together with placement"),
         (["build", str(MAZE), "--process", "nonsense"], "pom_cut"),
         (["build", str(MAZE), "--cells", "nonsense"], "parametron"),
         (["verify", "nowhere"], "no such build folder"),
