@@ -14,8 +14,8 @@ from mdlcad.placement.problem import Problem
 
 LIMIT = 0.2
 """CP-SAT's deterministic time."""
-MOST_MASSES = 400
-"""Above this the problem is not small any more."""
+MOST_MASSES, MOST_CLAUSES = 400, 50_000
+"""Above these the problem is not small any more (a sliver of a boundary can have a hundred columns)."""
 PASSED = 3
 """A hub column that a tab passes takes the room of so many trunks."""
 
@@ -23,7 +23,7 @@ PASSED = 3
 def choose_columns(problem: Problem, lattice: Lattice, seed: int) -> tuple[int, ...] | None:
     """A column for every mass; None if there is no way, none was found in the limit, or the network is too large."""
     masses, columns = len(problem.mass) - 1, len(lattice.column_x)
-    if masses > MOST_MASSES:
+    if masses > MOST_MASSES or len(problem.coupling) * columns**2 > MOST_CLAUSES:
         return None
     model = cp_model.CpModel()
     at = [[model.new_bool_var(f"at{mass}.{column}") for column in range(columns)] for mass in range(masses)]

@@ -38,7 +38,7 @@ def test_a_huge_fan_in_is_owned_up_to_with_its_hub() -> None:
     assert {item.names[0] for item in found if item.rule != "coupler"} <= {name.partition("->")[0] for name in left_out}
 
 
-@pytest.mark.parametrize("boundary", [((0, 0), (0, 1), (400, 1), (400, 0)), ((0, 0), (0, 400), (1, 400), (1, 0))])
+@pytest.mark.parametrize("boundary", [((0, 0), (0, 1), (2000, 1), (2000, 0)), ((0, 0), (0, 2000), (1, 2000), (1, 0))])
 def test_a_sliver_of_a_boundary_is_refused_and_the_reason_told(boundary: tuple[tuple[int, int], ...]) -> None:
     network = star()
     with pytest.raises(SignoffError, match=r"star: no lattice of 21 slots fits the boundary") as caught:
