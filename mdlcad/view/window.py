@@ -243,7 +243,7 @@ class Controls:
             loc="upper right",
             size=(0.17, 0.026 * len(keys)),
             border=False,
-            background_color="white",
+            bcolor="white",
             background_opacity=0.7,
         )
         plotter.render()

@@ -30,7 +30,7 @@ def test_plates_lie_on_each_other_with_the_gap_between() -> None:
         ("span = 12.5", "span = 'long'", "unit.span"),
         ("span = 12.5", "span = -1.0", "unit.span"),
         ("span = 12.5", "spam = 12.5", "span"),
-        ("pair_spacing = 6.0", "pair_spacing = 6.0\nextra = 1", "unit.extra"),
+        ("pair_spacing = 7.0", "pair_spacing = 7.0\nextra = 1", "unit.extra"),
         ("legs = [2, 4, 6]", "legs = [3]", "link.legs"),
         ("rib_width = 4.0", "rib_width = 2.0", "unit.rib_width"),
         ('material = "pom" },       ', 'material = "wood" },       ', "stack.plates.unit.material"),
