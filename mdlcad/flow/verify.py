@@ -86,6 +86,7 @@ def _verify(folder: Path, report: Report, workers: int, say: Callable[[str], Non
         grid = load(folder, "placement.json", GridPlacement)
         boundary = tuple(line.start for line in device.boundary)
         step("placement", check_grid(network, grid, boundary, port_places(device)))
+        step("page", _check_page(folder))
         return broken
     sizing, process = load(folder, "sizing.json", Sizing), load(folder, "process.json", Process)
     placement, layout = load(folder, "placement.json", Placement), load(folder, "layout.json", Layout)
@@ -112,6 +113,7 @@ def _verify(folder: Path, report: Report, workers: int, say: Callable[[str], Non
         built = prove(extract(recovered, network, sizing), reference, seed=report.seed, workers=workers)
         words = [str(item) for item in built.first_mismatches] or ["nothing was checked"]
         step("extracted", [] if built.holds else words)
+    step("page", _check_page(folder))
     return broken
 
 
@@ -119,6 +121,18 @@ def _is_placed_only(folder: Path, report: Report) -> bool:
     """Whether the build is as whole as its cell library allows: placed on the grid, without parts."""
     last = report.stages[-1].name if report.stages else ""
     return last == GRID_STEPS[-1].name and isinstance(recorded_library(folder), TwoPhaseLibrary)
+
+
+def _check_page(folder: Path) -> list[str]:
+    """The page has no hash, because it shows the stages' seconds; but the other files make it anew to the byte."""
+    from mdlcad.report.page import PAGE, page  # the templates are not needed where hashes differ
+
+    path = folder / PAGE
+    if not path.is_file():
+        raise UsageError(f"{path}: is missing from the build; build it again")
+    if path.read_bytes() != page(folder).encode():
+        return [f"{PAGE}: is not the page that the build's files make"]
+    return []
 
 
 def _check_hashes(folder: Path, report: Report) -> list[str]:

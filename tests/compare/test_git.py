@@ -2,15 +2,19 @@
 
 import os
 import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
+
+import pytest
 
 from tests.compare.edits import copy_of, move_unit, remove_link
 
 ROOT = Path(__file__).resolve().parents[2]
 
 
+@pytest.mark.skipif(shutil.which("git") is None, reason="NO GIT: the recipe for git was not tried")
 def test_the_git_recipe_of_the_manual_works(voter_build, tmp_path):
     manual = (ROOT / "docs" / "compare.md").read_text()
     recipe, compare = re.findall(r"```sh\n(.*?)```", manual[manual.index("## In git") :], re.S)
