@@ -125,7 +125,8 @@ def _is_placed_only(folder: Path, report: Report) -> bool:
 
 def _check_page(folder: Path) -> list[str]:
     """The page has no hash, because it shows the stages' seconds; but the other files make it anew to the byte."""
-    from mdlcad.report.page import PAGE, page  # the templates are not needed where hashes differ
+    from mdlcad.report.make import PAGE
+    from mdlcad.report.page import page  # the templates are not needed where hashes differ
 
     path = folder / PAGE
     if not path.is_file():
