@@ -77,10 +77,11 @@ class Frame:
         """Stiffness matrix, shape (3 n, 3 n), no supports applied."""
         size = 3 * len(self.nodes)
         total = np.zeros((size, size))
-        for beam in self.beams:
-            places = [3 * beam.start + i for i in range(3)] + [3 * beam.end + i for i in range(3)]
-            turn = self._rotation(beam)
-            total[np.ix_(places, places)] += turn.T @ _beam_matrix(self.length(beam), beam) @ turn
+        start, end = (
+            np.array([getattr(beam, name) for beam in self.beams], dtype=np.intp) for name in ("start", "end")
+        )
+        places = np.concatenate([3 * start[:, None] + np.arange(3), 3 * end[:, None] + np.arange(3)], axis=1)
+        np.add.at(total, (places[:, :, None], places[:, None, :]), self._beam_matrices(start, end))
         for spring in self.springs:
             total[spring.dof, spring.dof] += spring.stiffness
         for tie in self.ties:
@@ -149,10 +150,31 @@ class Frame:
         base = self.nodes[beam.start] + np.outer(at * length, axis)
         return base + np.outer(along, axis) + np.outer(across, normal), slope
 
+    def _beam_matrices(self, start: NDArray[np.intp], end: NDArray[np.intp]) -> Array:
+        """Stiffness matrices of all beams in the frame's axes, shape (m, 6, 6)."""
+        chord = self.nodes[end] - self.nodes[start]
+        length = np.hypot(chord[:, 0], chord[:, 1])
+        c, s = (chord / length[:, None]).T
+        a = np.array([beam.axial for beam in self.beams]) / length
+        b = np.array([beam.bending for beam in self.beams]) / length**3
+        zero = np.zeros_like(a)
+        # stretching along (c, s); bending, whose shape is that of a unit displacement across and of two end turns
+        along = np.stack([-c, -s, zero, c, s, zero], axis=1)
+        across = np.stack([s, -c, zero, -s, c, zero], axis=1) / length[:, None]
+        first, second = across.copy(), across.copy()
+        first[:, 2] -= 1.0
+        second[:, 5] -= 1.0
+        stiff = a[:, None, None] * along[:, :, None] * along[:, None, :]
+        pairs = ((4.0, first, first), (4.0, second, second), (2.0, first, second), (2.0, second, first))
+        for factor, one, other in pairs:
+            stiff += (factor * b * length**2)[:, None, None] * one[:, :, None] * other[:, None, :]
+        return np.asarray(stiff, dtype=np.float64)
+
     def _rotation(self, beam: Beam) -> Array:
         c, s = (self.nodes[beam.end] - self.nodes[beam.start]) / self.length(beam)
-        one = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
-        return np.kron(np.eye(2), one)
+        turn = np.zeros((6, 6))
+        turn[:3, :3] = turn[3:, 3:] = [[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]]
+        return turn
 
 
 def _beam_matrix(length: float, beam: Beam) -> Array:

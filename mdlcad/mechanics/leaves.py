@@ -1,4 +1,8 @@
-"""Sizes of couplers, rockers and bias leaves: the shortest meander of the template's that keeps all limits."""
+"""Sizes of couplers, rockers and bias leaves: the shortest meander of the template's that keeps all limits.
+
+Linear theory finds the pitch and throws out most candidates; what it leaves is held against the strain limit by the
+large-displacement computation (``beam.large``), which is what the strain of a size says.
+"""
 
 from __future__ import annotations
 
@@ -7,12 +11,18 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from enum import StrEnum
 
+import numpy as np
+from scipy.optimize import brentq
+
 from mdlcad.mechanics import flexure
-from mdlcad.mechanics.beam.large import LargeFrame
+from mdlcad.mechanics.beam.large import LargeFrame, Pose
 from mdlcad.mechanics.flexure import Chain, Deflection, Meander, Sheet
-from mdlcad.mechanics.frame import Y, dof
+from mdlcad.mechanics.frame import X, Y, dof
 from mdlcad.mechanics.process import PlateRole, Process
 from mdlcad.mechanics.unit import UnitLaw
+
+_HOPELESS = 1.25
+"""A leaf that linear theory strains so many times its limit is not computed at large displacements."""
 
 
 class LeafKind(StrEnum):
@@ -38,7 +48,9 @@ class LeafSize:
         common: the same for a rocker whose ends move together: of 1/4 C (yl + yr)^4; 0 for the others.
         skew: what a meander does otherwise upwards than downwards, N/mm^2: B of B (yl + yr) (yl - yr)^2 for a rocker,
             of 1/3 B d^3 for a bias leaf; a coupler is the same both ways.
-        strain, slope, eye_turn, clearance, sweep: at the worst deflection; see ``flexure.Deflection``.
+        strain: largest at any deflection that it must bear, bending and stretching, by the large-displacement
+            computation.
+        slope, eye_turn, clearance, sweep: at the worst deflection; see ``flexure.Deflection``.
         slot: how far the eye of a bias leaf is drawn in, mm: (least, most); (0, 0) for the others.
         misses: names of the limits that no candidate of the template keeps; empty if all is well.
     """
@@ -94,7 +106,7 @@ def size_leaf(
     """The shortest meander with that coupling stiffness (N/mm) whose limits hold in every case.
 
     Args:
-        cases: deflections (y left, y right) in mm that it must bear.
+        cases: deflections (y left, y right) in mm that it must bear; of a bias leaf, the two ends of its range.
 
     Of the walls and leg counts of the template, the pitch that gives the stiffness is found by bisection. If none
     keeps all limits, the one that misses the fewest (then the shortest) is returned with their names.
@@ -110,36 +122,127 @@ def size_leaf(
             if pitch is None:
                 continue
             found = _examine(kind, Meander(wall, legs, pitch, amplitude), cases, process, sheet, law)
+            if not found.misses or (found.misses == ("strain",) and found.strain < _HOPELESS * sheet.strain_limit):
+                found = _held_to_strain(found, cases, process, sheet, law)
             if best is None or (len(found.misses), found.reach) < (len(best.misses), best.reach):
                 best = found
             if not found.misses:
                 break  # a thicker wall makes a longer leaf
     if best is None:
         raise ValueError(f"no meander of the process {process.name} has a stiffness of {stiffness} N/mm")
+    if best.misses:
+        best = _held_to_strain(best, cases, process, sheet, law)
     return _with_quartic(best, cases, process)
 
 
+def _held_to_strain(
+    leaf: LeafSize, cases: tuple[tuple[float, float], ...], process: Process, sheet: Sheet, law: UnitLaw
+) -> LeafSize:
+    """``leaf`` with its true strain; a bias leaf the way up that its one-sided range strains less.
+
+    A meander with all its legs on one side is stiffer, and more strained, towards one side than the other.
+    """
+    ways = [leaf]
+    if leaf.kind is LeafKind.BIAS:
+        turned = replace(leaf.shape, amplitude=-leaf.shape.amplitude)
+        ways.append(_examine(leaf.kind, turned, cases, process, sheet, law))
+    held = []
+    for way in ways:
+        strain = large_strain(way.kind, way.shape, cases, process)
+        misses = [name for name in way.misses if name != "strain"] + ["strain"] * (strain > sheet.strain_limit)
+        held.append(replace(way, strain=trim(strain), misses=tuple(misses)))
+    return min(held, key=lambda way: (len(way.misses), way.strain))
+
+
+class LargeLeaf:
+    """A flexure at large displacements, its ends driven in y."""
+
+    def __init__(self, kind: LeafKind, shape: Meander, process: Process) -> None:
+        self.chain = chain_of(kind, shape, process)
+        beams = len(self.chain.frame.beams)
+        self._walls = [shape.wall] * self.chain.flexible + [0.0] * (beams - self.chain.flexible)
+        self._frame = LargeFrame(self.chain.frame, [4] * self.chain.flexible + [1] * (beams - self.chain.flexible))
+        self._pose = self._frame.rest()
+
+    def at(self, left: float, right: float) -> Pose:
+        """The equilibrium with its ends at these heights, mm; continues from the last.
+
+        Raises:
+            ArithmeticError: there is none.
+        """
+        self._pose = self._frame.move(self._pose, flexure.driven(self.chain, left, right))
+        return self._pose
+
+    def force(self, left: float, right: float) -> float:
+        """What holds its left end in y, N."""
+        return float(self.at(left, right).reactions[dof(self.chain.left, Y)])
+
+    def strain(self, left: float, right: float) -> float:
+        """Largest strain of any wall."""
+        return float(self._frame.strains(self.at(left, right), self._walls).max())
+
+
+def large_strain(kind: LeafKind, shape: Meander, cases: tuple[tuple[float, float], ...], process: Process) -> float:
+    """Largest strain of a flexure in any of ``cases`` (as ``size_leaf``); infinite if it has no equilibrium there."""
+    leaf = LargeLeaf(kind, shape, process)
+    try:
+        return max(leaf.strain(*case) for case in cases)
+    except ArithmeticError:
+        return math.inf
+
+
+def bias_offset(leaf: LeafSize, force: float, process: Process) -> float:
+    """How far, mm, a bias leaf must be bent to pull with ``force`` (N, of either sign): solved at large displacements.
+
+    Raises:
+        ValueError: it cannot be bent so far.
+    """
+    large, most = LargeLeaf(leaf.kind, leaf.shape, process), 2.0 * force / leaf.own
+    try:
+        bent = brentq(lambda d: large.force(float(d), 0.0) - force, *sorted((0.0, most)), xtol=1e-5)
+    except (ArithmeticError, ValueError) as error:
+        raise ValueError(f"no offset of its post makes the leaf pull with {abs(force):.3f} N") from error
+    return float(bent)
+
+
+def _slot(large: LargeLeaf, ends: tuple[float, float]) -> tuple[float, float]:
+    """How far the eye of a bias leaf is drawn in while it is bent between ``ends`` (mm): least and most.
+
+    In truth and as linear theory says, by which it is drawn.
+    """
+    drawn = []
+    for bent in np.linspace(*ends, 9):
+        drawn.append(-float(large.at(bent, 0.0).displacements[dof(large.chain.right, X)]))
+        drawn.append(flexure.drawn_in(large.chain, flexure.deflect(large.chain, bent, 0.0)))
+    return math.floor(min(drawn) * 100.0) / 100.0, math.ceil(max(drawn) * 100.0) / 100.0
+
+
 def _with_quartic(leaf: LeafSize, cases: tuple[tuple[float, float], ...], process: Process) -> LeafSize:
-    """``leaf`` with its quartic terms from the large-displacement computation at its largest deflections."""
-    chain = chain_of(leaf.kind, leaf.shape, process)
-    cuts = [4] * chain.flexible + [1] * (len(chain.frame.beams) - chain.flexible)
-    large = LargeFrame(chain.frame, cuts)
+    """``leaf`` with its higher terms from the large-displacement computation at its largest deflections."""
+    large = LargeLeaf(leaf.kind, leaf.shape, process)
     across = leaf.coupling if leaf.kind is LeafKind.ROCKER else -leaf.coupling
-    quartic = common = skew = most = 0.0
-    for left, right in cases:
-        together = left * right > 0.0
-        if not together and abs(left) <= most:
-            continue  # of a bias leaf's two ways, the farther
-        both = []
-        for way in (1.0, -1.0):
-            pose = large.move(large.rest(), flexure.driven(chain, way * left, way * right))
-            both.append(float(pose.reactions[dof(chain.left, Y)]) - way * (leaf.own * left + across * right))
-        odd, even = (both[0] - both[1]) / 2.0, (both[0] + both[1]) / 2.0
-        if together:
-            common = odd / (left + right) ** 3
-        else:
-            most = abs(left)
-            quartic, skew = odd / (left - right) ** 3, even / (left - right) ** 2
+
+    def beyond(left: float, right: float) -> float:
+        return large.force(left, right) - (leaf.own * left + across * right)
+
+    try:
+        if leaf.kind is LeafKind.BIAS:
+            # of force = own d + skew d^2 + quartic d^3, exact at both ends of the range
+            first, second = cases[0][0], cases[1][0]
+            rows = [[first**2, first**3], [second**2, second**3]]
+            skew, quartic = np.linalg.solve(rows, [beyond(first, 0.0), beyond(second, 0.0)])
+            slot = _slot(large, (min(first, second, 0.0), max(first, second, 0.0)))
+            return replace(leaf, quartic=trim(float(quartic)), skew=trim(float(skew)), slot=slot)
+        quartic = common = skew = 0.0
+        for left, right in cases:
+            one, other = beyond(left, right), beyond(-left, -right)
+            odd, even = (one - other) / 2.0, (one + other) / 2.0
+            if left * right > 0.0:
+                common = odd / (left + right) ** 3
+            else:
+                quartic, skew = odd / (left - right) ** 3, even / (left - right) ** 2
+    except ArithmeticError as error:
+        raise ValueError(f"a {leaf.kind.value} that is soft enough finds no equilibrium at its farthest") from error
     if leaf.kind is LeafKind.COUPLER:
         skew = 0.0
     return replace(leaf, quartic=trim(quartic), common=trim(common), skew=trim(skew))
@@ -172,10 +275,6 @@ def _examine(
     one = flexure.examine(chain, flexure.deflect(chain, 1.0, 0.0))
     stiffening = 2.0 * axial * one.shortening**2  # an estimate, on the safe side
     worst = _worst(seen)
-    slot = (0.0, 0.0)
-    if kind is LeafKind.BIAS:
-        drawn = [flexure.drawn_in(chain, flexure.deflect(chain, *case)) for case in (*cases, (0.0, 0.0))]
-        slot = (math.floor(min(drawn) * 100.0) / 100.0, math.ceil(max(drawn) * 100.0) / 100.0)
     limits = {
         "strain": worst.strain <= sheet.strain_limit,
         "slope": worst.slope <= link.slope_limit,
@@ -197,7 +296,7 @@ def _examine(
         eye_turn=trim(worst.eye),
         clearance=trim(worst.clearance),
         sweep=trim(worst.sweep),
-        slot=slot,
+        slot=(0.0, 0.0),
         misses=tuple(name for name, holds in limits.items() if not holds),
     )
 

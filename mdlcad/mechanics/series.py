@@ -30,7 +30,8 @@ class SeriesSpring:
         clear_block: between end block and first leaf; clear: between the two stems (least gap and travel).
         stiffness: N/mm, of the frame with this wall.
         travel: largest bend, mm, at the worst of the clock with the shuttle held at x = 0.
-        strain: the largest there; strain_settled: the same when the shuttle has buckled.
+        strain: the largest there, strain_settled: the same when the shuttle has buckled, both at large displacements
+            once sizing knows the preloads (``series_spring`` itself gives linear theory's).
         turn_stiffness: N mm/rad, of the end block against turning.
         reach: length in x of end block, leaves and clock block.
     """

@@ -28,8 +28,8 @@ class BiasSize:
     """The bias leaf of one mass.
 
     Attributes:
-        offset: place of the post in y from the row's centre, mm: -q F0 over the leaf's stiffness.
-        bias: q that it gives; self_stiffness: what it adds to its mass, in units of S0.
+        offset: place of the post in y from the row's centre, mm, where the leaf pulls with -q F0 on a shuttle at 0.
+        bias: q that it gives; self_stiffness: what it adds to its mass there, in units of S0.
     """
 
     mass: str
@@ -46,7 +46,8 @@ class UnitSize:
     Attributes:
         compensation_network: what the cell library computed; compensation: minus the self terms of the parts built.
         preload: mm by which the clock block is pushed towards the shuttle when the clock stands in its middle (p = 1).
-        amplitude: largest |y| seen, mm; strain: of its beams there.
+        amplitude: largest |y| seen, mm; strain: largest in its beams there, at large displacements, at either end of
+            the clock's motion.
     """
 
     mass: str

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from statistics import median_low
 
 from mdlcad.errors import UsageError
 from mdlcad.mechanics.findings import Finding, findings_of
-from mdlcad.mechanics.leaves import LeafKind, LeafSize, eye_radius, size_leaf, trim
+from mdlcad.mechanics.leaves import LeafKind, LeafSize, bias_offset, eye_radius, size_leaf, trim
 from mdlcad.mechanics.process import PlateRole, Process
 from mdlcad.mechanics.rules import LayoutRules
 from mdlcad.mechanics.series import SeriesSpring, series_spring
 from mdlcad.mechanics.sizes import BiasSize, CouplerSize, UnitSize
-from mdlcad.mechanics.unit import UnitLaw, beam_strain, unit_law
+from mdlcad.mechanics.strains import cases_of, unit_strains
+from mdlcad.mechanics.unit import UnitLaw, unit_law
 from mdlcad.network.model import Coupling, Mass, Network
 
 
@@ -54,7 +55,21 @@ def size(network: Network, process: Process, peak: Mapping[str, float]) -> Sizin
     row_pitch = _up(law.shuttle_height + 2.0 * throw + process.link.gap + process.machine.repeatability)
     k_least = min(min(mass.k0, mass.k0 + 2.0 * mass.k1) for mass in network.masses)
     series = series_spring(process, law, row_pitch, k_least, max(absorbed.values()))
-    units = tuple(_unit(mass, absorbed[mass.name], peak[mass.name], process, law) for mass in network.masses)
+    preloads = {mass.name: _preload(mass, absorbed[mass.name], process, law) for mass in network.masses}
+    strains = unit_strains(network, process, law, series, preloads, peak)
+    series = replace(series, strain=trim(strains.peak), strain_settled=trim(strains.settled))
+    units = tuple(
+        UnitSize(
+            mass=mass.name,
+            phase=mass.phase,
+            compensation_network=mass.compensation,
+            compensation=trim(0.0 - absorbed[mass.name]),
+            preload=preloads[mass.name],
+            amplitude=process.unit.throw_unit * peak[mass.name],
+            strain=trim(strains.beams[mass.name]),
+        )
+        for mass in network.masses
+    )
     rules = _rules(network, process, law, series, units, couplers, biases, throw, row_pitch)
     findings = findings_of(network, process, law, series, units, couplers, biases, rules)
     return Sizing(process.name, law, series, units, couplers, biases, rules, findings)
@@ -89,39 +104,40 @@ def _couplers(network: Network, process: Process, law: UnitLaw, throw: float) ->
 def _coupler_leaf(coupling: Coupling, process: Process, law: UnitLaw, throw: float) -> LeafSize:
     stiffness = abs(coupling.strength) * law.stiffness_unit
     try:
-        if coupling.strength > 0.0:
-            return size_leaf(LeafKind.COUPLER, stiffness, ((throw, -throw),), process, law)
-        return size_leaf(LeafKind.ROCKER, stiffness, ((throw, -throw), (throw, throw)), process, law)
+        kind = LeafKind.COUPLER if coupling.strength > 0.0 else LeafKind.ROCKER
+        return size_leaf(kind, stiffness, cases_of(kind, throw, 0.0), process, law)
     except ValueError as error:
         raise UsageError(f"coupling {coupling.name}: {error}") from error
 
 
 def _biases(network: Network, process: Process, law: UnitLaw, throw: float) -> tuple[BiasSize, ...]:
     stiffness = process.link.bias_ratio * law.stiffness_unit
-    sized: dict[float, LeafSize] = {}
+    sized: dict[float, tuple[LeafSize, float]] = {}
     result = []
     for mass in network.masses:
         if mass.bias == 0.0:
             continue
-        force = abs(mass.bias) * law.force_unit
-        if force not in sized:
+        if mass.bias not in sized:
             try:
-                far = throw + force / stiffness
-                sized[force] = size_leaf(LeafKind.BIAS, stiffness, ((far, 0.0), (throw - far, 0.0)), process, law)
+                sized[mass.bias] = _bias_leaf(mass.bias * law.force_unit, stiffness, process, law, throw)
             except ValueError as error:
                 raise UsageError(f"bias of {mass.name}: {error}") from error
-        leaf = sized[force]
-        offset = force / leaf.own
-        result.append(
-            BiasSize(
-                mass=mass.name,
-                leaf=leaf,
-                offset=round(-math.copysign(offset, mass.bias), 4),
-                bias=mass.bias,
-                self_stiffness=trim(leaf.own / law.stiffness_unit),
-            )
-        )
+        leaf, offset = sized[mass.bias]
+        slope = leaf.own - 2.0 * leaf.skew * offset + 3.0 * leaf.quartic * offset**2
+        result.append(BiasSize(mass.name, leaf, offset, mass.bias, trim(slope / law.stiffness_unit)))
     return tuple(result)
+
+
+def _bias_leaf(force: float, stiffness: float, process: Process, law: UnitLaw, throw: float) -> tuple[LeafSize, float]:
+    """The leaf that holds a shuttle at 0 back with ``force`` (N), and where its post stands (mm).
+
+    Its range is known only with its offset, which linear theory gives to begin with; the first leaf says it better.
+    """
+    bent = force / stiffness
+    for _ in range(2):
+        leaf = size_leaf(LeafKind.BIAS, stiffness, cases_of(LeafKind.BIAS, throw, -bent), process, law)
+        bent = round(bias_offset(leaf, force, process), 4)
+    return leaf, -bent
 
 
 def _self_terms(network: Network, couplers: tuple[CouplerSize, ...], biases: tuple[BiasSize, ...]) -> dict[str, float]:
@@ -135,19 +151,10 @@ def _self_terms(network: Network, couplers: tuple[CouplerSize, ...], biases: tup
     return total
 
 
-def _unit(mass: Mass, absorbed: float, peak: float, process: Process, law: UnitLaw) -> UnitSize:
+def _preload(mass: Mass, absorbed: float, process: Process, law: UnitLaw) -> float:
     # The unit's own k at p = 1 is what the mass is to have, less what its springs add; kappa0 is the unloaded unit's.
     own = mass.k0 + mass.k1 - absorbed
-    amplitude = process.unit.throw_unit * peak
-    return UnitSize(
-        mass=mass.name,
-        phase=mass.phase,
-        compensation_network=mass.compensation,
-        compensation=trim(0.0 - absorbed),
-        preload=round(law.stroke_per_k * (process.unit.kappa0 - own), 4),
-        amplitude=amplitude,
-        strain=beam_strain(process, amplitude),
-    )
+    return round(law.stroke_per_k * (process.unit.kappa0 - own), 4)
 
 
 TURN_SHARE = 0.45

@@ -85,12 +85,3 @@ def unit_law(process: Process) -> UnitLaw:
         shuttle_turn=2.0 * one_axial * spread + count * 4.0 * modulus * depth * unit.beam_wall**3 / 12.0 / unit.span,
         shuttle_tilt=2.0 * 12.0 * modulus * inertia_z / unit.span**3 * spread,
     )
-
-
-def beam_strain(process: Process, amplitude: float) -> float:
-    """Largest strain of a beam whose shuttle is ``amplitude`` mm from the middle: 3 t A / l^2 + pi^2 t^2 / (12 l^2).
-
-    The first term is the guided beam's end moment; the second the Euler load's mean compression.
-    """
-    unit = process.unit
-    return 3.0 * unit.beam_wall * amplitude / unit.span**2 + (math.pi * unit.beam_wall / unit.span) ** 2 / 12.0

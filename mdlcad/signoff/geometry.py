@@ -7,7 +7,9 @@ from collections.abc import Sequence
 from shapely import Polygon
 
 from mdlcad.errors import SignoffError
+from mdlcad.mechanics import Finding as SizeFinding
 from mdlcad.mechanics import Process, Sizing
+from mdlcad.mechanics.strains import check_strain
 from mdlcad.network.model import Network
 from mdlcad.parts.body import Body
 from mdlcad.parts.plates import plates_of
@@ -19,6 +21,7 @@ from mdlcad.signoff.drc import RULES, Finding, check_bed, check_containment, che
 from mdlcad.signoff.summary import DesignRules
 
 CARRIER_RULES = ("carrier_stiffness", "shuttle_tilt")
+STRAIN_RULES = ("strain", "strain_peak")
 
 
 def check_geometry(
@@ -48,7 +51,8 @@ def check_geometry(
         Finding(item.rule, item.names, item.x, item.y, 0.0, 0.0, item.message)
         for item in check_layout(network, placement, layout, rules)
     ]
-    findings += _of_sizing(sizing, where)
+    findings += _of_sizing(sizing.findings, where)
+    findings += _strains(network, sizing, process, where)
     targets = {coupling.name: coupling.target for coupling in network.couplings}
     for fault in carrier_faults(carriers, sizing, process):
         names, place = (f"coupler.{fault.coupling}",), where[targets[fault.coupling]]
@@ -57,15 +61,37 @@ def check_geometry(
         Finding("unrealised_coupling", (name,), *where[targets.get(name, name)], 1.0, 0.0, reason)
         for name, reason in layout.unrealised
     ]
-    ran = sorted({*RULES, *CARRIER_RULES, *(item.rule for item in findings)})
+    ran = sorted({*RULES, *CARRIER_RULES, *STRAIN_RULES, *(item.rule for item in findings)})
     counts = {rule: sum(item.rule == rule for item in findings) for rule in ran}
     return DesignRules(counts, tuple(findings), ())
 
 
-def _of_sizing(sizing: Sizing, where: dict[str, tuple[float, float]]) -> list[Finding]:
-    found = []
-    for item in sizing.findings:
+def _strains(
+    network: Network, sizing: Sizing, process: Process, where: dict[str, tuple[float, float]]
+) -> list[Finding]:
+    """Rules ``strain`` and ``strain_peak``, computed anew from the sizes; what the sizing says of them is not used."""
+    found = check_strain(
+        network,
+        process,
+        sizing.law,
+        sizing.series,
+        {unit.mass: unit.preload for unit in sizing.units},
+        {unit.mass: unit.amplitude / process.unit.throw_unit for unit in sizing.units},
+        sizing.couplers,
+        sizing.biases,
+        sizing.rules.throw,
+    )
+    return _placed(found, where)
+
+
+def _of_sizing(found: Sequence[SizeFinding], where: dict[str, tuple[float, float]]) -> list[Finding]:
+    return _placed([item for item in found if item.rule not in STRAIN_RULES], where)
+
+
+def _placed(found: Sequence[SizeFinding], where: dict[str, tuple[float, float]]) -> list[Finding]:
+    placed = []
+    for item in found:
         subject = item.subject.partition(".")[2]
         place = where.get(subject.rpartition("->")[2], (0.0, 0.0))
-        found.append(Finding(item.rule, (item.subject,), *place, item.value, item.limit, item.message))
-    return found
+        placed.append(Finding(item.rule, (item.subject,), *place, item.value, item.limit, item.message))
+    return placed

@@ -12,7 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from mdlcad.mechanics.beam.large import LargeFrame, Pose
-from mdlcad.mechanics.flexure import RIGID, Chain, Sheet, driven
+from mdlcad.mechanics.beam.unit import held, unit_model
+from mdlcad.mechanics.flexure import Chain, driven
 from mdlcad.mechanics.frame import TURN, Array, Frame, X, Y, dof
 from mdlcad.mechanics.leaves import LeafSize, chain_of
 from mdlcad.mechanics.process import PlateRole, Process
@@ -21,7 +22,6 @@ from mdlcad.mechanics.series import SeriesSpring, spring_frame
 from mdlcad.mechanics.unit import UnitLaw
 
 _POINTS = 25
-_CUTS_BEAM = 12
 _CUTS_LEAF = 6
 
 
@@ -54,54 +54,6 @@ class Curve:
         at = [i for i in range(len(force) - 1) if force[i] < 0.0 <= force[i + 1]]
         d = self.displacement
         return [float(d[i] - force[i] * (d[i + 1] - d[i]) / (force[i + 1] - force[i])) for i in at]
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class UnitModel:
-    """A whole unit: its frame and how its beams are cut; ``ribs``, ``hub`` and ``pin`` (the clock block) are nodes."""
-
-    frame: Frame
-    cuts: list[int]
-    ribs: list[int]
-    walls: list[float]
-    hub: int
-    pin: int
-
-
-def unit_model(process: Process, series: SeriesSpring) -> UnitModel:
-    """Frame rib, two times N beams, the shuttle, the end block, the folded spring and the clock block's pin."""
-    unit = process.unit
-    plate = process.plates(PlateRole.UNIT)[0]
-    material = process.material(plate)
-    sheet = Sheet(material.modulus, plate.thickness, material.strain_limit)
-    half, wall = unit.block_width / 2.0, unit.beam_wall
-    heights = np.linspace(-unit.pair_spacing / 2.0, unit.pair_spacing / 2.0, unit.beams)
-    # the spring's own frame begins at the end block's middle
-    spring = spring_frame(process, series.wall, series.height, series.clear)
-    nodes = list(spring.nodes)
-    flexible = list(zip(spring.beams, spring.widths, strict=False))
-    stiff = spring.beams[len(spring.widths) :]
-    hub = len(nodes)
-    nodes.append((-half - unit.span - half, 0.0))
-    ribs = []
-    for y in heights:
-        rib, left, right, end = range(len(nodes), len(nodes) + 4)
-        x_hub = nodes[hub][0]
-        nodes += [(x_hub - half - unit.span, y), (x_hub - half, y), (x_hub + half, y), (-half, y)]
-        flexible += [(sheet.beam(rib, left, wall), wall), (sheet.beam(right, end, wall), wall)]
-        stiff += [sheet.beam(a, b, wall, RIGID) for a, b in ((left, hub), (hub, right), (end, 0))]
-        ribs.append(rib)
-    beams = [beam for beam, _ in flexible] + stiff
-    cuts = [_CUTS_BEAM if width == wall else _CUTS_LEAF for _, width in flexible] + [1] * len(stiff)
-    widths = [width for _, width in flexible] + [0.0] * len(stiff)
-    return UnitModel(Frame(nodes, beams), cuts, ribs, widths, hub, spring.pin)
-
-
-def held(model: UnitModel, stroke: float, displacement: float) -> dict[int, float]:
-    """What is prescribed with the clock block pushed in by ``stroke`` and the shuttle held at ``displacement``, mm."""
-    ribs = dict.fromkeys((dof(rib, i) for rib in model.ribs for i in (X, Y, TURN)), 0.0)
-    pin = {dof(model.pin, X): -stroke, dof(model.pin, Y): 0.0, dof(model.pin, TURN): 0.0}
-    return ribs | pin | {dof(model.hub, Y): displacement}
 
 
 def unit_curve(process: Process, law: UnitLaw, series: SeriesSpring, k: float, throw: float) -> Curve:

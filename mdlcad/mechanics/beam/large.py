@@ -65,6 +65,10 @@ class LargeFrame:
         self._bending = np.array([e.bending for e in elements])
         chord = self._nodes[end] - self._nodes[start]
         self._length = np.hypot(chord[:, 0], chord[:, 1])
+        own = np.array([spring.dof for spring in frame.springs], dtype=np.intp)
+        # where the entries of the elements' matrices, and of the springs, belong
+        self._row = np.append(np.repeat(self._places, 6, axis=1).ravel(), own)
+        self._column = np.append(np.tile(self._places, (1, 6)).ravel(), own)
         self._cosine, self._sine = (chord / self._length[:, None]).T
 
     def rest(self) -> Pose:
@@ -109,15 +113,19 @@ class LargeFrame:
 
     def _newton(self, from_here: Array, held: NDArray[np.intp], free: NDArray[np.intp], goal: Array) -> Array | None:
         here = from_here.copy()
-        jump = goal - here[held]
+        jump = np.zeros(self.size)
+        jump[held] = goal - here[held]
+        place = np.full(self.size, -1)
+        place[free] = np.arange(len(free))
+        inner = (place[self._row] >= 0) & (place[self._column] >= 0)
+        row, column = place[self._row][inner], place[self._column][inner]
         for iteration in range(_ITERATIONS):
-            force, tangent = self._forces(here)
-            residual = force[free]
-            columns = csc_matrix(tangent)
+            force, values = self._forces(here)
             if iteration == 0:
-                residual = residual + columns[free][:, held] @ jump
+                np.add.at(force, self._row, values * jump[self._column])
                 here[held] = goal
-            step = splu(columns[free][:, free]).solve(-residual)
+            tangent = csc_matrix((values[inner], (row, column)), shape=(len(free), len(free)))
+            step = splu(tangent).solve(-force[free])
             if not np.all(np.isfinite(step)) or np.max(np.abs(step)) > 5.0:
                 return None
             here[free] += step
@@ -145,7 +153,8 @@ class LargeFrame:
             sine,
         )
 
-    def _forces(self, q: Array) -> tuple[Array, csc_matrix]:
+    def _forces(self, q: Array) -> tuple[Array, Array]:
+        """Forces of the beams and springs, and the entries of the tangent at ``_row``, ``_column``."""
         stretch, moments, length, c, s = self._inner(q)
         zero, one = np.zeros_like(c), np.ones_like(c)
         r = np.stack([-c, -s, zero, c, s, zero], axis=1)
@@ -161,17 +170,12 @@ class LargeFrame:
         elastic[:, 0, 0] = self._axial / self._length
         elastic[:, 1, 1] = elastic[:, 2, 2] = 4.0 * stiff
         elastic[:, 1, 2] = elastic[:, 2, 1] = 2.0 * stiff
-        local = np.einsum("mia,mij,mjb->mab", rows, elastic, rows)
+        local = rows.transpose(0, 2, 1) @ (elastic @ rows)
         local += (stretch / length)[:, None, None] * z[:, :, None] * z[:, None, :]
         both = r[:, :, None] * z[:, None, :]
         local += ((moments[0] + moments[1]) / length**2)[:, None, None] * (both + both.transpose(0, 2, 1))
         force = np.zeros(self.size)
-        np.add.at(force, self._places, np.einsum("mia,mi->ma", rows, inner))
-        row = np.repeat(self._places, 6, axis=1).ravel()
-        column = np.tile(self._places, (1, 6)).ravel()
-        values = local.ravel()
+        np.add.at(force, self._places, (inner[:, None, :] @ rows)[:, 0])
         for spring in self._springs:
             force[spring.dof] += spring.stiffness * q[spring.dof]
-            row, column = np.append(row, spring.dof), np.append(column, spring.dof)
-            values = np.append(values, spring.stiffness)
-        return force, csc_matrix((values, (row, column)), shape=(self.size, self.size))
+        return force, np.append(local.ravel(), [spring.stiffness for spring in self._springs])

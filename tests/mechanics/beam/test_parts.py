@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from mdlcad.mechanics import Process, Sizing
-from mdlcad.mechanics.beam.curves import held, unit_curve, unit_model
+from mdlcad.mechanics.beam.curves import unit_curve
 from mdlcad.mechanics.beam.large import LargeFrame
+from mdlcad.mechanics.beam.unit import held, unit_model
 from mdlcad.mechanics.flexure import driven
 from mdlcad.mechanics.frame import TURN, Frame, X, Y, dof
 from mdlcad.mechanics.leaves import LeafKind, LeafSize, chain_of
