@@ -24,6 +24,9 @@ def register(commands: Commands[argparse.ArgumentParser]) -> None:
     build.add_argument("--from", dest="first", metavar="STAGE", help="take earlier artefacts from the folder")
     build.add_argument("--to", dest="last", metavar="STAGE", help="stop after this stage")
     build.add_argument("--jobs", type=jobs, default=2, metavar="N", help="processors to use (%(default)s)")
+    build.add_argument(
+        "--fresh", action="store_true", help="rerun every stage, also those whose inputs are as in the folder's build"
+    )
     _add_synthesis(build.add_argument_group("synthesis options", "of libraries of kind two_phase"))
     build.set_defaults(run=_run)
 
@@ -41,6 +44,7 @@ def _add_synthesis(group: argparse._ArgumentGroup) -> None:
 
 def _run(options: argparse.Namespace) -> int:
     from mdlcad.flow.build import Request, build
+    from mdlcad.flow.kept import Reuse
     from mdlcad.mapping import MappingRequest
     from mdlcad.routing.driver import Size
 
@@ -63,6 +67,7 @@ def _run(options: argparse.Namespace) -> int:
             last=options.last,
             workers=options.jobs,
             size=Size(options.pitch, options.fit),
+            reuse=Reuse.FRESH if options.fresh else Reuse.KEEP,
         ),
         say,
     )

@@ -8,36 +8,28 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import msgspec
+
 from mdlcad import __version__
-from mdlcad.artefact import checksum, load, to_json, write_atomic
+from mdlcad.artefact import checksum, to_json, write_atomic
 from mdlcad.errors import InputError, SignoffError, UsageError
-from mdlcad.flow.folder import REPORT, new_folder
+from mdlcad.flow.folder import REPORT, new_folder, resting_place
+from mdlcad.flow.inputs import digests_of, inputs_of
+from mdlcad.flow.kept import Earlier, Reuse, earlier_build
 from mdlcad.flow.plans import steps_with
 from mdlcad.flow.result import make_report
-from mdlcad.flow.state import Job, State
-from mdlcad.flow.steps import STEPS, Step
-from mdlcad.language import Device, anchored
+from mdlcad.flow.state import Job, State, joined, narrowed
+from mdlcad.flow.step import Step
+from mdlcad.flow.steps import STEPS
+from mdlcad.language import anchored
 from mdlcad.mapping import CELLS_FILE, Library, MappingRequest, load_library, recorded_library
-from mdlcad.mechanics import Sizing, load_process
-from mdlcad.network.model import Network
-from mdlcad.placement.placement import Placement
-from mdlcad.proof.outcome import Proof
+from mdlcad.mechanics import load_process
 from mdlcad.report.page import write_page
-from mdlcad.report.report import StageRecord, Stopped
+from mdlcad.report.report import Origin, StageRecord, Stopped
 from mdlcad.routing.driver import SMALLEST, Size
-from mdlcad.routing.layout import Layout
-from mdlcad.synthesis.netlist import Netlist
 
 # What ``--from`` can take from a folder instead of making it.
-_LOADED: dict[str, type] = {
-    "device": Device,
-    "netlist": Netlist,
-    "network": Network,
-    "proof": Proof,
-    "sizing": Sizing,
-    "placement": Placement,
-    "layout": Layout,
-}
+_LOADED = ("device", "netlist", "network", "proof", "sizing", "placement", "layout")
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,6 +38,7 @@ class Request:
 
     Attributes:
         cells: name or path of the cell library; None for the default, or with ``first`` the one in the folder.
+        reuse: whether stages may be taken over from the build that now is where this one goes.
     """
 
     source: Path
@@ -58,12 +51,14 @@ class Request:
     last: str | None
     workers: int
     size: Size = SMALLEST
+    reuse: Reuse = Reuse.KEEP
 
 
 def build(request: Request, say: Callable[[str], None]) -> tuple[Path, list[str]]:
     """Build into a folder; the folder, and what does not hold in it, in words (empty: all holds).
 
     A build whose network or layout does not hold ends there; the folder keeps what was made, and its report says why.
+    It never replaces a build that holds: it is then put beside it (``resting_place``).
 
     Raises:
         InputError, UsageError: the program or the request cannot be used; nothing was written.
@@ -75,42 +70,42 @@ def build(request: Request, say: Callable[[str], None]) -> tuple[Path, list[str]
         raise UsageError(
             f"--cells {request.cells}: the network is taken from the folder; leave it out, or start earlier"
         )
-    state = State()
-    source: Path | None = request.source
-    if loaded:
-        state = _load(request.source, loaded)
-        source = None
-        place = request.place or request.source
-    else:
-        place = request.place or Path("exports") / _design_name(request.source)
+    source = None if loaded else request.source
+    place = request.place or (request.source if loaded else Path("exports") / _design_name(request.source))
+    job = Job(source, library, process, request.seed, request.source, request.workers, request.size)
+    state = _load(job, loaded)
+    earlier = earlier_build(place, request.reuse)
+    made: dict[str, str] = {}
     records: list[StageRecord] = []
     stopped: Stopped | None = None
     with new_folder(place) as folder:
-        job = Job(source, library, process, request.seed, folder, request.workers, request.size)
+        job = replace(job, folder=folder)
         # what the build leans on goes with it, so that it can be signed off again elsewhere
         write_atomic(folder / "process.json", to_json(process))
         write_atomic(folder / CELLS_FILE, to_json(library))
         for step in loaded:
-            if step.artefact is not None:
-                data = step.artefact(state)
-                write_atomic(folder / f"{step.name}.json", data)
-                records.append(StageRecord(step.name, 0.0, checksum(data)))
-            step.draw(job, state)
+            records.append(_written(step, job, state))
+            made |= digests_of(step.makes, state, folder)
             stopped = stopped or _objection(step, state)
         for step in steps:
             if stopped is not None:
                 break
+            inputs = inputs_of(step, job, made)
             try:
-                state, record = _run(step, job, state, say)
+                state, record = _kept(step, job, state, earlier, inputs, say) or _run(step, job, state, inputs, say)
             except SignoffError as problem:
                 stopped = _stopped(step, problem, folder)
                 break
             records.append(record)
+            made |= digests_of(step.makes, state, folder)
             stopped = _objection(step, state)
         report = make_report(state, job, tuple(records), stopped, __version__)
         write_atomic(folder / REPORT, to_json(report))
         write_page(folder)
-    return place, list(report.failures)
+        rest = resting_place(folder, place)
+    if rest != place:
+        say(f"{place} keeps the build that it has, which holds; this one does not, and is put beside it")
+    return rest, list(report.failures)
 
 
 def _stopped(step: Step, problem: SignoffError, folder: Path) -> Stopped:
@@ -165,13 +160,45 @@ def _chosen(plan: tuple[Step, ...], first: str | None, last: str | None) -> tupl
     return plan[start:stop], plan[:start]
 
 
-def _load(folder: Path, steps: tuple[Step, ...]) -> State:
-    if not folder.is_dir():
-        raise UsageError(f"{folder}: no such build folder; --from needs one")
-    return replace(State(), **{step.name: load(folder, f"{step.name}.json", _LOADED[step.name]) for step in steps})
+def _load(job: Job, steps: tuple[Step, ...]) -> State:
+    """The state that the artefacts of ``steps`` in the job's folder make."""
+    if steps and not job.folder.is_dir():
+        raise UsageError(f"{job.folder}: no such build folder; --from needs one")
+    state = State()
+    for step in steps:
+        state = step.restore(job, state, ())
+    return state
 
 
-def _run(step: Step, job: Job, state: State, say: Callable[[str], None]) -> tuple[State, StageRecord]:
+def _written(step: Step, job: Job, state: State) -> StageRecord:
+    """The artefact of a loaded step, written again."""
+    before = _listing(job.folder)
+    digest = _write(step, job, state)
+    return StageRecord(step.name, 0.0, digest, "", _fresh(job.folder, before), Origin.LOADED)
+
+
+def _kept(
+    step: Step, job: Job, state: State, earlier: Earlier | None, inputs: str, say: Callable[[str], None]
+) -> tuple[State, StageRecord] | None:
+    """The state with what ``step`` made in the earlier build; None if that ran on other inputs or is not whole."""
+    began = time.perf_counter()
+    old = None if earlier is None else earlier.copy(step.name, inputs, job.folder)
+    if old is None:
+        return None
+    try:
+        result = step.restore(job, narrowed(state, (*step.needs, *step.told)), old.files)
+    except (UsageError, msgspec.ValidationError):
+        # the report vouches for files that no build writes: someone edited both
+        for file in old.files:
+            (job.folder / file).unlink()
+        return None
+    state = joined(state, result, step.makes)
+    record = replace(old, seconds=round(time.perf_counter() - began, 3), origin=Origin.KEPT)
+    _tell(step, state, record, say)
+    return state, record
+
+
+def _run(step: Step, job: Job, state: State, inputs: str, say: Callable[[str], None]) -> tuple[State, StageRecord]:
     began = time.perf_counter()
 
     def progress(words: str) -> None:
@@ -180,22 +207,43 @@ def _run(step: Step, job: Job, state: State, say: Callable[[str], None]) -> tupl
             sys.stderr.flush()
 
     progress("...")
-    before = set(state.files)
+    before = _listing(job.folder)
     try:
-        state = step.run(job, state, progress)
+        result = step.run(job, narrowed(state, (*step.needs, *step.told)), progress)
     except InputError as problem:
         raise (problem if job.source is None else anchored(problem, job.source)) from None
     finally:
         if sys.stderr.isatty():
             sys.stderr.write("\r\033[K")
-    if step.artefact is not None:
-        data = step.artefact(state)
-        digest = checksum(data)
+    state = joined(state, result, step.makes)
+    digest = _write(step, job, state)
+    files = _fresh(job.folder, before)
+    if step.artefact is None:
+        lines = [f"{name} {checksum((job.folder / name).read_bytes())}\n" for name in files]
+        digest = checksum("".join(lines).encode())
+    record = StageRecord(step.name, round(time.perf_counter() - began, 3), digest, inputs, files)
+    _tell(step, state, record, say)
+    return state, record
+
+
+def _write(step: Step, job: Job, state: State) -> str:
+    """Write the step's artefact and what goes beside it; SHA-256 of the artefact ("" if it has none)."""
+    data = step.artefact(state) if step.artefact is not None else None
+    if data is not None:
         write_atomic(job.folder / f"{step.name}.json", data)
-        step.draw(job, state)
-    else:
-        fresh = sorted(set(state.files) - before)
-        digest = checksum("".join(f"{name} {checksum((job.folder / name).read_bytes())}\n" for name in fresh).encode())
-    seconds = time.perf_counter() - began
-    say(f"{step.name:<11} {step.summary(state):<78} {seconds:7.2f} s  {digest[:12]}")
-    return state, StageRecord(step.name, round(seconds, 3), digest)
+    step.draw(job, state)
+    return "" if data is None else checksum(data)
+
+
+def _tell(step: Step, state: State, record: StageRecord, say: Callable[[str], None]) -> None:
+    kept = "  (kept)" if record.origin is Origin.KEPT else ""
+    say(f"{step.name:<11} {step.summary(state):<78} {record.seconds:7.2f} s  {record.checksum[:12]}{kept}")
+
+
+def _listing(folder: Path) -> frozenset[str]:
+    """Paths of the files in ``folder``, relative to it (for membership only)."""
+    return frozenset(path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file())
+
+
+def _fresh(folder: Path, before: frozenset[str]) -> tuple[str, ...]:
+    return tuple(sorted(_listing(folder) - before))

@@ -9,7 +9,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from mdlcad.artefact import load
 from mdlcad.errors import UsageError
+from mdlcad.report.report import Report
 
 REPORT = "report.json"
 _AT_FDCWD = -100
@@ -18,7 +20,7 @@ _RENAME_EXCHANGE = 2
 
 @contextmanager
 def new_folder(place: Path) -> Iterator[Path]:
-    """A fresh folder beside ``place``; when the block ends well it takes that place, else it is removed.
+    """A fresh folder beside ``place``; when the block ends well it takes its ``resting_place``, else it is removed.
 
     Whoever looks at ``place``, also after a kill, sees the old folder or the new one, never a part. What a killed
     build left beside it is removed by the next.
@@ -27,10 +29,7 @@ def new_folder(place: Path) -> Iterator[Path]:
         UsageError: ``place`` is something that must not be replaced (a file, or a folder that is no build).
     """
     place = place.absolute()
-    if place.exists() and not place.is_dir():
-        raise UsageError(f"{place.name}: is a file; give a folder with -o")
-    if place.is_dir() and any(place.iterdir()) and not (place / REPORT).exists():
-        raise UsageError(f"{place.name}: is a folder that holds no build; give another with -o, or empty it")
+    _refuse_what_is_no_build(place)
     place.parent.mkdir(parents=True, exist_ok=True)
     _remove_abandoned(place)
     fresh = place.parent / f".{place.name}.building-{os.getpid()}"
@@ -38,9 +37,34 @@ def new_folder(place: Path) -> Iterator[Path]:
     fresh.mkdir()
     try:
         yield fresh
-        _take_place(fresh, place)
+        rest = resting_place(fresh, place)
+        _refuse_what_is_no_build(rest)
+        _take_place(fresh, rest)
     finally:
         shutil.rmtree(fresh, ignore_errors=True)
+
+
+def resting_place(fresh: Path, place: Path) -> Path:
+    """Where a finished build goes: ``place``, but if it does not hold and the one there does, NAME.failed beside it."""
+    if not _holds(fresh) and _holds(place):
+        return place.with_name(f"{place.name}.failed")
+    return place
+
+
+def _holds(folder: Path) -> bool:
+    """Whether the folder has a build of which all that was asked for was made, and all that was checked holds."""
+    try:
+        report = load(folder, REPORT, Report)
+    except UsageError:
+        return False
+    return report.stopped is None and not report.failures
+
+
+def _refuse_what_is_no_build(place: Path) -> None:
+    if place.exists() and not place.is_dir():
+        raise UsageError(f"{place.name}: is a file; give a folder with -o")
+    if place.is_dir() and any(place.iterdir()) and not (place / REPORT).exists():
+        raise UsageError(f"{place.name}: is a folder that holds no build; give another with -o, or empty it")
 
 
 def _remove_abandoned(place: Path) -> None:

@@ -8,16 +8,16 @@ from dataclasses import replace
 from mdlcad.artefact import to_json
 from mdlcad.errors import SignoffError, UsageError
 from mdlcad.flow.state import Job, State, need
-from mdlcad.flow.steps import STEPS, Step, draw_placement, port_places
+from mdlcad.flow.step import Step, from_artefact
+from mdlcad.flow.steps import STEPS, draw_placement
 from mdlcad.mapping import Library
 from mdlcad.mapping.two_phase import TwoPhaseLibrary
 from mdlcad.placement.check_grid import check_grid
-from mdlcad.placement.unit_grid import Placer, Seating, place_on_grid
+from mdlcad.placement.unit_grid import GridPlacement, Placer, Seating, place_on_grid
 
 
 def _place(job: Job, state: State, progress: Callable[[str], None]) -> State:
-    device, network = need(state.device), need(state.network)
-    boundary, ports = tuple(line.start for line in device.boundary), port_places(device)
+    network, boundary, ports = need(state.network), need(state.outline).boundary, need(state.outline).ports
     grid = place_on_grid(network, boundary, ports, Placer.ANNEAL, Seating.ON_BOUNDARY, job.seed)
     found = check_grid(network, grid, boundary, ports)
     if found:
@@ -32,7 +32,17 @@ def _words(state: State) -> str:
 
 GRID_STEPS: tuple[Step, ...] = (
     *(step for step in STEPS if step.name in ("device", "netlist", "network", "proof")),
-    Step("placement", ("device", "network"), ("grid",), _place, _words, lambda s: to_json(s.grid), draw_placement),
+    Step(
+        "placement",
+        ("outline", "network"),
+        ("grid",),
+        _place,
+        _words,
+        lambda s: to_json(s.grid),
+        from_artefact("grid", GridPlacement, "placement"),
+        ("seed",),
+        draw=draw_placement,
+    ),
 )
 """The steps with a library whose springs have no parts yet: its masses are placed, without a size."""
 

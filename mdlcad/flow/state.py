@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TypeVar
 
+from mdlcad.flow.outline import Outline
 from mdlcad.language import Device
 from mdlcad.mapping import Library
 from mdlcad.mechanics import Process, Sizing
@@ -51,9 +52,11 @@ class State:
 
     Attributes:
         grid: what the placement is with a library that has no parts yet.
+        files, pictures: paths in the folder, of the files for other programs and of the views.
     """
 
     device: Device | None = None
+    outline: Outline | None = None
     netlist: Netlist | None = None
     network: Network | None = None
     proof: Proof | None = None
@@ -66,8 +69,19 @@ class State:
     rules: DesignRules | None = None
     drive: DriveLoads | None = None
     files: tuple[str, ...] = ()
+    pictures: tuple[str, ...] = ()
     lvs: LvsResult | None = None
     extracted: Proof | None = None
+
+
+def narrowed(state: State, fields: tuple[str, ...]) -> State:
+    """A state that holds nothing but ``fields``: what a step does not say that it needs, it does not see."""
+    return replace(State(), **{field: getattr(state, field) for field in fields})
+
+
+def joined(state: State, result: State, fields: tuple[str, ...]) -> State:
+    """``state`` with ``fields`` as they are in ``result``."""
+    return replace(state, **{field: getattr(result, field) for field in fields})
 
 
 def need(artefact: T | None) -> T:

@@ -6,24 +6,25 @@ holds the list to that.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from shapely import Polygon
 
-from mdlcad.artefact import to_json, write_atomic
+from mdlcad.artefact import load, to_json, write_atomic
 from mdlcad.errors import Diagnostic, InputError, SignoffError, UsageError
+from mdlcad.flow.outline import outline_of, place_of
 from mdlcad.flow.state import Job, State, need
-from mdlcad.language import Actuator, Device, Sensor, Where, read_device
+from mdlcad.flow.step import Progress, Step, from_artefact
+from mdlcad.language import Device, read_device
 from mdlcad.mapping import map_netlist
-from mdlcad.mechanics import size
-from mdlcad.mechanics.drive import drive_loads
-from mdlcad.network.model import CouplingKind
+from mdlcad.mechanics import Sizing, size
+from mdlcad.mechanics.drive import DriveLoads, drive_loads
+from mdlcad.network.model import CouplingKind, Network
 from mdlcad.parts import build_parts
 from mdlcad.parts.stiffness import carrier_faults, carrier_stiffnesses
-from mdlcad.parts.store import Parts, records_of
+from mdlcad.parts.store import Parts, bodies_of, records_of
 from mdlcad.placement.placement import Placement
-from mdlcad.placement.ports import PortPlace
+from mdlcad.proof.outcome import Proof
 from mdlcad.proof.prove import prove
 from mdlcad.proof.reference import build_reference
 from mdlcad.routing import find_lack, place_and_route
@@ -32,42 +33,21 @@ from mdlcad.routing.judge import Objection
 from mdlcad.routing.layout import Layout
 from mdlcad.signoff.extraction import extract
 from mdlcad.signoff.geometry import check_geometry
-from mdlcad.signoff.lvs import compare, recover
+from mdlcad.signoff.lvs import LvsResult, compare, recover
 from mdlcad.signoff.readback import read_step
+from mdlcad.signoff.summary import DesignRules
 from mdlcad.synthesis import synthesise
-
-
-@dataclass(frozen=True, slots=True)
-class Step:
-    """One step.
-
-    Attributes:
-        name: what ``--from`` and ``--to`` call it, and the stem of its artefact.
-        needs, makes: fields of ``State``.
-        run: does it. Raises InputError or UsageError for bad input, SignoffError if what it made does not hold.
-        summary: one line about what came out.
-        artefact: the bytes of what it made, kept as NAME.json; None if it made files of its own.
-        draw: writes pictures of that artefact beside it, whether it was made or taken from a folder.
-        objection: why nothing can be made of what it made, in words with numbers; None if it may go on.
-    """
-
-    name: str
-    needs: tuple[str, ...]
-    makes: tuple[str, ...]
-    run: Callable[[Job, State, Callable[[str], None]], State]
-    summary: Callable[[State], str]
-    artefact: Callable[[State], bytes] | None
-    draw: Callable[[Job, State], None] = lambda job, state: None
-    objection: Callable[[State], str | None] = lambda state: None
-
-
-Progress = Callable[[str], None]
+from mdlcad.synthesis.netlist import Netlist
 
 
 def _read(job: Job, state: State, progress: Progress) -> State:
     if job.source is None:
         raise SignoffError("there is no program to read")
-    return replace(state, device=read_device(job.source))
+    return _with_device(state, read_device(job.source))
+
+
+def _with_device(state: State, device: Device) -> State:
+    return replace(state, device=device, outline=outline_of(device))
 
 
 def _synthesise(job: Job, state: State, progress: Progress) -> State:
@@ -105,7 +85,7 @@ def _size(job: Job, state: State, progress: Progress) -> State:
 
 def _place_and_route(job: Job, state: State, progress: Progress) -> State:
     device, network, sizing = need(state.device), need(state.network), need(state.sizing)
-    boundary, ports = tuple(line.start for line in device.boundary), port_places(device)
+    boundary, ports = need(state.outline).boundary, need(state.outline).ports
     lack = find_lack(network, boundary, ports, sizing.rules)
     if lack is not None:
         where = place_of(device, lack.bit) if lack.bit else device.boundary[0].where
@@ -165,13 +145,13 @@ def _drive(job: Job, state: State, progress: Progress) -> State:
 def _export(job: Job, state: State, progress: Progress) -> State:
     from mdlcad.export.files import write_files  # the CAD kernel takes seconds to load; early stages need not wait
 
-    name, bodies = need(state.device).name, need(state.bodies)
+    name, bodies = need(state.network).design, need(state.bodies)
     return replace(state, files=write_files(name, bodies, job.folder, job.workers, progress))
 
 
 def _lvs(job: Job, state: State, progress: Progress) -> State:
     network = need(state.network)
-    recovered = recover(read_step(job.folder / f"{need(state.device).name}.step"))
+    recovered = recover(read_step(job.folder / f"{network.design}.step"))
     result = compare(recovered, network)
     extracted = prove(
         extract(recovered, network, need(state.sizing)),
@@ -185,7 +165,13 @@ def _lvs(job: Job, state: State, progress: Progress) -> State:
 def _picture(job: Job, state: State, progress: Progress) -> State:
     from mdlcad.view.views import write_views  # VTK takes seconds to load
 
-    return replace(state, files=state.files + write_views(need(state.bodies), job.folder, progress))
+    return replace(state, pictures=write_views(need(state.bodies), job.folder, progress))
+
+
+def _draw_placed(job: Job, state: State) -> None:
+    # placement and layout are made together: one without the other is no result
+    write_atomic(job.folder / "layout.json", to_json(state.layout))
+    draw_placement(job, state)
 
 
 def draw_placement(job: Job, state: State) -> None:
@@ -202,36 +188,6 @@ def _draw_layout(job: Job, state: State) -> None:
     write_atomic(views / "layout.svg", picture)
 
 
-def place_of(device: Device, bit: str) -> Where:
-    """Where the program gives the place of the port bit "NAME[i]"."""
-    name, _, index = bit.removesuffix("]").rpartition("[")
-    ports: tuple[Sensor | Actuator, ...] = (*device.sensors, *device.actuators)
-    return next(port.places[int(index)].where for port in ports if port.name == name)
-
-
-def port_places(device: Device) -> tuple[PortPlace, ...]:
-    """Every sensor and actuator bit at its place on the boundary, in grid units."""
-    lines = {line.name: line for line in device.boundary}
-    places = []
-    ports: tuple[Sensor | Actuator, ...] = (*device.sensors, *device.actuators)
-    for port in ports:
-        for index, place in enumerate(port.places):
-            line = lines[place.line]
-            dx, dy = line.end[0] - line.start[0], line.end[1] - line.start[1]
-            length = (dx * dx + dy * dy) ** 0.5
-            places.append(
-                PortPlace(
-                    bit=f"{port.name}[{index}]",
-                    line=line.name,
-                    x=line.start[0] + place.position * dx,
-                    y=line.start[1] + place.position * dy,
-                    # the boundary runs clockwise, so outside is to the left of a line
-                    normal=(-dy / length, dx / length),
-                )
-            )
-    return tuple(places)
-
-
 def _behaviour_words(state: State) -> str:
     proof = need(state.proof)
     kind = "exhaustive" if proof.exhaustive else "sampled"
@@ -241,14 +197,31 @@ def _behaviour_words(state: State) -> str:
     )
 
 
+def _restore_placed(job: Job, state: State, files: tuple[str, ...]) -> State:
+    placement = load(job.folder, "placement.json", Placement)
+    return replace(state, placement=placement, layout=load(job.folder, "layout.json", Layout))
+
+
+def _restore_parts(job: Job, state: State, files: tuple[str, ...]) -> State:
+    parts = load(job.folder, "parts.json", Parts)
+    return replace(state, bodies=bodies_of(parts.bodies), carriers=parts.carriers)
+
+
+def _restore_extraction(job: Job, state: State, files: tuple[str, ...]) -> State:
+    lvs, extracted = load(job.folder, "extraction.json", tuple[LvsResult, Proof])
+    return replace(state, lvs=lvs, extracted=extracted)
+
+
 STEPS: tuple[Step, ...] = (
     Step(
         "device",
         (),
-        ("device",),
+        ("device", "outline"),
         _read,
         lambda s: f"{len(need(s.device).sensors)} sensors, {len(need(s.device).actuators)} actuators",
         lambda s: to_json(s.device),
+        lambda job, state, files: _with_device(state, load(job.folder, "device.json", Device)),
+        ("source",),
     ),
     Step(
         "netlist",
@@ -257,6 +230,7 @@ STEPS: tuple[Step, ...] = (
         _synthesise,
         lambda s: f"{len(need(s.netlist).gates)} gates, {len(need(s.netlist).registers)} registers",
         lambda s: to_json(s.netlist),
+        from_artefact("netlist", Netlist),
     ),
     Step(
         "network",
@@ -268,6 +242,8 @@ STEPS: tuple[Step, ...] = (
             f"{need(s.network).cycles_per_tick} cycles a tick"
         ),
         lambda s: to_json(s.network),
+        from_artefact("network", Network),
+        ("library",),
     ),
     Step(
         "proof",
@@ -276,6 +252,8 @@ STEPS: tuple[Step, ...] = (
         _prove,
         _behaviour_words,
         lambda s: to_json(s.proof),
+        from_artefact("proof", Proof),
+        ("seed",),
         objection=_refuted,
     ),
     Step(
@@ -285,15 +263,20 @@ STEPS: tuple[Step, ...] = (
         _size,
         lambda s: f"throw {need(s.sizing).rules.throw:.2f} mm, row pitch {need(s.sizing).rules.row_pitch:.2f} mm",
         lambda s: to_json(s.sizing),
+        from_artefact("sizing", Sizing),
+        ("process",),
     ),
     Step(
         "placement",
-        ("device", "network", "sizing"),
+        ("outline", "network", "sizing"),
         ("placement", "layout"),
         _place_and_route,
         lambda s: f"{len(need(s.placement).column_x)} columns x {len(need(s.placement).row_y)} rows",
         lambda s: to_json(s.placement),
-        draw_placement,
+        _restore_placed,
+        ("process", "seed", "size"),
+        ("device",),
+        _draw_placed,
     ),
     Step(
         "layout",
@@ -305,7 +288,8 @@ STEPS: tuple[Step, ...] = (
             f"{len(need(s.layout).couplers)} couplers"
         ),
         lambda s: to_json(s.layout),
-        _draw_layout,
+        lambda job, state, files: state,
+        draw=_draw_layout,
     ),
     Step(
         "parts",
@@ -314,6 +298,8 @@ STEPS: tuple[Step, ...] = (
         _build_parts,
         lambda s: f"{len(need(s.bodies))} bodies",
         lambda s: to_json(Parts(records_of(need(s.bodies)), s.carriers)),
+        _restore_parts,
+        ("process",),
     ),
     Step(
         "drc",
@@ -322,6 +308,8 @@ STEPS: tuple[Step, ...] = (
         _check_geometry,
         lambda s: f"{len(need(s.rules).errors)} errors, {len(need(s.rules).findings)} findings",
         lambda s: to_json(s.rules),
+        from_artefact("rules", DesignRules, "drc"),
+        ("process",),
     ),
     Step(
         "drive",
@@ -333,8 +321,18 @@ STEPS: tuple[Step, ...] = (
             f"{need(s.drive).torque_most_nmm:.0f} N mm"
         ),
         lambda s: to_json(s.drive),
+        from_artefact("drive", DriveLoads),
+        ("process", "seed"),
     ),
-    Step("files", ("device", "bodies"), ("files",), _export, lambda s: f"{len(s.files)} files", None),
+    Step(
+        "files",
+        ("network", "bodies"),
+        ("files",),
+        _export,
+        lambda s: f"{len(s.files)} files",
+        None,
+        lambda job, state, files: replace(state, files=files),
+    ),
     Step(
         "extraction",
         ("device", "network", "sizing", "files"),
@@ -345,27 +343,16 @@ STEPS: tuple[Step, ...] = (
             f"{need(s.extracted).transitions_checked} transitions, {need(s.extracted).mismatches} mismatches"
         ),
         lambda s: to_json([s.lvs, s.extracted]),
+        _restore_extraction,
+        ("seed",),
     ),
     Step(
         "views",
-        ("network", "placement", "layout", "sizing", "bodies", "files"),
-        ("files",),
+        ("bodies",),
+        ("pictures",),
         _picture,
         lambda s: "pictures",
         None,
+        lambda job, state, files: replace(state, pictures=files),
     ),
 )
-
-
-def check_order(steps: tuple[Step, ...] = STEPS) -> None:
-    """Every step's needs are made before it.
-
-    Raises:
-        ValueError: names the step and what it lacks.
-    """
-    made: set[str] = set()
-    for step in steps:
-        lacking = set(step.needs) - made
-        if lacking:
-            raise ValueError(f"step {step.name} needs {sorted(lacking)}, which no earlier step makes")
-        made |= set(step.makes)

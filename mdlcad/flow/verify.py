@@ -12,8 +12,8 @@ from mdlcad.artefact import checksum, load
 from mdlcad.errors import InputError, SignoffError, UsageError
 from mdlcad.export.mesh import check_stl
 from mdlcad.flow.folder import REPORT
+from mdlcad.flow.outline import port_places
 from mdlcad.flow.plans import GRID_STEPS
-from mdlcad.flow.steps import port_places
 from mdlcad.language import Device
 from mdlcad.mapping import CELLS_FILE, map_netlist, recorded_library
 from mdlcad.mapping.two_phase import TwoPhaseLibrary

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from enum import StrEnum
 
 from mdlcad.mechanics.drive import DriveLoads
 from mdlcad.parts.bom import Bom
@@ -48,13 +49,32 @@ class Mechanics:
     warnings: tuple[str, ...]
 
 
+class Origin(StrEnum):
+    """Where a stage's result is from: made in this build, kept from the build before it in its place (the same bytes,
+    since nothing it depends on has changed), or loaded from the folder that ``--from`` starts at."""
+
+    MADE = "made"
+    KEPT = "kept"
+    LOADED = "loaded"
+
+
 @dataclass(frozen=True, slots=True)
 class StageRecord:
-    """One stage that ran: wall time in seconds and the SHA-256 of its artefact."""
+    """One stage.
+
+    Attributes:
+        seconds: wall time; of a stage that was kept, of taking it over.
+        checksum: SHA-256 of its artefact.
+        inputs: SHA-256 over all that its result depends on; "" if that is not known (it was loaded).
+        files: what it wrote, relative to the folder.
+    """
 
     name: str
     seconds: float
     checksum: str
+    inputs: str = ""
+    files: tuple[str, ...] = ()
+    origin: Origin = Origin.MADE
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +89,7 @@ class Stopped:
 class Report:
     """The machine's copy of the build's result. None: the build ended before that was known.
 
-    All of it but the seconds of the stages is the same for the same input, seed and version.
+    All of it but the seconds and the origin of the stages is the same for the same input, seed and version.
 
     Attributes:
         stages: those that ended well, in order.

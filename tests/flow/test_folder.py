@@ -11,7 +11,8 @@ import pytest
 from mdlcad.artefact import load
 from mdlcad.errors import UsageError
 from mdlcad.flow.folder import REPORT, new_folder
-from mdlcad.flow.steps import STEPS, check_order
+from mdlcad.flow.step import check_order
+from mdlcad.flow.steps import STEPS
 from mdlcad.report.report import Report
 
 
@@ -85,6 +86,6 @@ def test_a_broken_artefact_is_named(tmp_path, content, words):
 
 
 def test_every_step_is_given_what_it_needs():
-    check_order()
+    check_order(STEPS)
     with pytest.raises(ValueError, match="needs"):
         check_order(tuple(reversed(STEPS)))
