@@ -12,10 +12,13 @@ import numpy as np
 from ezdxf import units
 from shapely import Polygon
 
+from mdlcad.errors import SignoffError
+from mdlcad.export.arcs import with_arcs
 from mdlcad.export.solid import plate_section, rings
 from mdlcad.parts.body import Body
 
 _MARGIN_MM = 5.0
+_TEXT_MM = 1.5
 # Registered in this order; left alone, the library registers them in the order of a set.
 _DXF_CLASSES = (
     "ACDBDICTIONARYWDFLT",
@@ -53,13 +56,34 @@ def _path(section: Polygon) -> str:
     return "".join("M" + "L".join(f"{x:.4f} {-y:.4f}" for x, y in ring) + "Z" for ring in rings(section))
 
 
-def dxf_plate(bodies: Sequence[Body]) -> bytes:
-    """DXF (R2010, mm) of the plate's union as cut: closed polylines, outer cuts and inner cuts on their own layers.
+def dxf_plate(bodies: Sequence[Body], kerf_mm: float = 0.0) -> bytes:
+    """DXF (R2010, mm) of the plate's union: closed polylines with true arcs, one layer a purpose.
 
-    Kerf is not applied.
+    OUTER and INNER are what is cut, NAMES (which is not plotted) says which body is where.
+
+    Args:
+        kerf_mm: width that the machine takes away; outlines are drawn half of it outside what is to be left. 0: as
+            drawn.
+
+    Raises:
+        SignoffError: a gap or hole is narrower than the kerf.
     """
+    section = plate_section(bodies)
+    if kerf_mm:
+        section = _widened(section, kerf_mm)
     with _fixed_dxf_stamps():
-        return _dxf(bodies)
+        return _dxf(section, bodies)
+
+
+def _widened(section: Sequence[Polygon], kerf_mm: float) -> list[Polygon]:
+    wide = [polygon.buffer(kerf_mm / 2.0, join_style="mitre", mitre_limit=10.0) for polygon in section]
+    for before, after in zip(section, wide, strict=True):
+        if len(before.interiors) != len(after.interiors):
+            place = before.representative_point()
+            raise SignoffError(
+                f"a hole or gap near ({place.x:.1f}, {place.y:.1f}) is narrower than the kerf of {kerf_mm:g} mm"
+            )
+    return wide
 
 
 @contextmanager
@@ -73,18 +97,21 @@ def _fixed_dxf_stamps() -> Iterator[None]:
         ezdxf.options.write_fixed_meta_data_for_testing = before
 
 
-def _dxf(bodies: Sequence[Body]) -> bytes:
+def _dxf(section: Sequence[Polygon], bodies: Sequence[Body]) -> bytes:
     document = ezdxf.new("R2010", units=units.MM)
     for name in _DXF_CLASSES:
         document.classes.add_class(name)
     document.layers.add("OUTER", color=1)
     document.layers.add("INNER", color=5)
+    document.layers.add("NAMES", color=8).dxf.plot = 0
     space = document.modelspace()
-    for polygon in plate_section(bodies):
-        outline, *holes = rings(polygon)
-        space.add_lwpolyline(outline, close=True, dxfattribs={"layer": "OUTER"})
-        for hole in holes:
-            space.add_lwpolyline(hole, close=True, dxfattribs={"layer": "INNER"})
+    for polygon in section:
+        for ring, layer in zip(rings(polygon), ["OUTER"] + ["INNER"] * len(polygon.interiors), strict=True):
+            space.add_lwpolyline(with_arcs(ring), format="xyb", close=True, dxfattribs={"layer": layer})
+    for body in bodies:
+        place = body.section.representative_point()
+        text = space.add_text(body.name, height=_TEXT_MM, dxfattribs={"layer": "NAMES"})
+        text.set_placement((place.x, place.y))
     stream = io.StringIO()
     document.write(stream)
     return stream.getvalue().encode()

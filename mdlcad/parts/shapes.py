@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 
 import shapely
@@ -11,6 +12,8 @@ GRID = 1e-4
 """Coordinates are rounded to this, mm."""
 
 _QUARTER = 6  # segments of a quarter circle
+ARC_STEP = math.pi / 2.0 / _QUARTER
+"""What a round outline turns by from one straight edge to the next, rad."""
 
 
 def box(x_low: float, y_low: float, x_high: float, y_high: float) -> Polygon:
