@@ -24,6 +24,7 @@ def register(commands: Commands[argparse.ArgumentParser]) -> None:
     build.add_argument("--from", dest="first", metavar="STAGE", help="take earlier artefacts from the folder")
     build.add_argument("--to", dest="last", metavar="STAGE", help="stop after this stage")
     build.add_argument("--jobs", type=jobs, default=2, metavar="N", help="processors to use (%(default)s)")
+    build.add_argument("--kerf", action="store_true", help="draw DXF files wider by the process's kerf (as designed)")
     build.add_argument(
         "--fresh", action="store_true", help="rerun every stage, also those whose inputs are as in the folder's build"
     )
@@ -45,6 +46,7 @@ def _add_synthesis(group: argparse._ArgumentGroup) -> None:
 def _run(options: argparse.Namespace) -> int:
     from mdlcad.flow.build import Request, build
     from mdlcad.flow.kept import Reuse
+    from mdlcad.flow.state import Outlines
     from mdlcad.mapping import MappingRequest
     from mdlcad.routing.driver import Size
 
@@ -67,6 +69,7 @@ def _run(options: argparse.Namespace) -> int:
             last=options.last,
             workers=options.jobs,
             size=Size(options.pitch, options.fit),
+            outlines=Outlines.KERF if options.kerf else Outlines.AS_DESIGNED,
             reuse=Reuse.FRESH if options.fresh else Reuse.KEEP,
         ),
         say,

@@ -55,6 +55,8 @@ def _dxf(path: Path) -> BaseGeometry:
 
     rings = []
     for entity in ezdxf.readfile(path).modelspace():
+        if entity.dxftype() in ("TEXT", "MTEXT"):
+            continue  # says what something is, cuts nothing
         outline = ezdxf.path.make_path(entity)
         points = [(point.x, point.y) for point in outline.flattening(_FLATTEN_MM)]
         if len(points) > 2:

@@ -17,12 +17,12 @@ from mdlcad.parts.plates import plates_of
 
 
 def write_files(
-    design: str, bodies: Sequence[Body], folder: Path, workers: int, progress: Callable[[str], None]
+    design: str, bodies: Sequence[Body], kerf_mm: float, folder: Path, workers: int, progress: Callable[[str], None]
 ) -> tuple[str, ...]:
     """Write NAME.step, NAME.3mf and plates/PLATE.{step,stl,dxf,svg}; the paths written, relative to ``folder``.
 
     STEP files take most of the time; with more than one worker the device's is made in a process beside this one, which
-    makes those of the plates meanwhile.
+    makes those of the plates meanwhile. ``kerf_mm`` is what DXF files allow for.
 
     Raises:
         SignoffError: a file read back does not hold what it should.
@@ -46,7 +46,7 @@ def write_files(
             progress(f"plate {plate}")
             put(f"plates/{plate}.stl", stl_plate(plate, members))
             put(f"plates/{plate}.svg", svg_plate(plate, members))
-            put(f"plates/{plate}.dxf", dxf_plate(members))
+            put(f"plates/{plate}.dxf", dxf_plate(members, kerf_mm))
             put(f"plates/{plate}.step", step_assembly(plate, members))
         progress("STEP of the device")
         put(f"{design}.step", whole())

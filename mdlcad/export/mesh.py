@@ -9,6 +9,7 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 import trimesh
+from shapely import Polygon
 
 from mdlcad.errors import SignoffError
 from mdlcad.export.solid import plate_section, prism, triangles
@@ -30,7 +31,7 @@ def stl_plate(plate: str, bodies: Sequence[Body]) -> bytes:
     The bytes are read back before they are returned.
 
     Raises:
-        SignoffError: the mesh read back is not watertight, or its volume is not section area x thickness.
+        SignoffError: the mesh read back is not watertight, or its volume or its holes are not those of its section.
     """
     section = plate_section(bodies)
     thickness = bodies[0].thickness
@@ -41,21 +42,29 @@ def stl_plate(plate: str, bodies: Sequence[Body]) -> bytes:
     records["normal"] = _normals(vertices[faces])
     data = f"plate {plate}, mm".encode("ascii", "replace").ljust(80) + np.uint32(len(faces)).tobytes()
     data += records.tobytes()
-    check_stl(plate, data, sum(polygon.area for polygon in section) * thickness)
+    check_stl(plate, data, section, thickness)
     return data
 
 
-def check_stl(plate: str, data: bytes, expected_mm3: float) -> None:
-    """Read an STL back with a second reader and hold it against the volume it must have.
+def check_stl(plate: str, data: bytes, section: Sequence[Polygon], thickness_mm: float) -> None:
+    """Read an STL back with a second reader and hold it against the section it must be a prism over.
 
     Raises:
-        SignoffError: it is not watertight or its volume is off by more than 1e-6.
+        SignoffError: it is not watertight, its volume is off by more than 1e-6, or it has another number of pieces or
+            of holes through them (the Euler characteristic of a piece with h holes is 2 - 2 h).
     """
+    expected_mm3 = sum(polygon.area for polygon in section) * thickness_mm
     mesh = trimesh.load_mesh(io.BytesIO(data), file_type="stl")
     if not mesh.is_watertight:
         raise SignoffError(f"plate {plate}: the STL is not watertight")
     if abs(mesh.volume - expected_mm3) > VOLUME_TOLERANCE * expected_mm3:
         raise SignoffError(f"plate {plate}: the STL holds {mesh.volume:.4f} mm3, its section {expected_mm3:.4f} mm3")
+    holes = sum(len(polygon.interiors) for polygon in section)
+    if mesh.body_count != len(section) or mesh.euler_number != 2 * len(section) - 2 * holes:
+        raise SignoffError(
+            f"plate {plate}: the STL has {mesh.body_count} pieces and the Euler number {mesh.euler_number}, "
+            f"its section {len(section)} pieces with {holes} holes"
+        )
 
 
 def _normals(corners: np.ndarray) -> np.ndarray:

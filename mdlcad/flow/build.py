@@ -18,7 +18,7 @@ from mdlcad.flow.inputs import digests_of, inputs_of
 from mdlcad.flow.kept import Earlier, Reuse, earlier_build
 from mdlcad.flow.plans import steps_with
 from mdlcad.flow.result import make_report
-from mdlcad.flow.state import Job, State, joined, narrowed
+from mdlcad.flow.state import Job, Outlines, State, joined, narrowed
 from mdlcad.flow.step import Step
 from mdlcad.flow.steps import STEPS
 from mdlcad.language import anchored
@@ -51,6 +51,7 @@ class Request:
     last: str | None
     workers: int
     size: Size = SMALLEST
+    outlines: Outlines = Outlines.AS_DESIGNED
     reuse: Reuse = Reuse.KEEP
 
 
@@ -72,7 +73,7 @@ def build(request: Request, say: Callable[[str], None]) -> tuple[Path, list[str]
         )
     source = None if loaded else request.source
     place = request.place or (request.source if loaded else Path("exports") / _design_name(request.source))
-    job = Job(source, library, process, request.seed, request.source, request.workers, request.size)
+    job = Job(source, library, process, request.seed, request.source, request.workers, request.size, request.outlines)
     state = _load(job, loaded)
     earlier = earlier_build(place, request.reuse)
     made: dict[str, str] = {}

@@ -26,6 +26,7 @@ _SETTINGS: dict[str, Callable[[Job], bytes]] = {
     "library": lambda job: to_json(job.library),
     "process": lambda job: to_json(job.process),
     "seed": lambda job: to_json(job.seed),
+    "kerf_mm": lambda job: to_json(job.kerf_mm),
     "size": lambda job: to_json(job.size),
 }
 """What a step may read of a ``Job`` beside the folder and the number of workers, which change no result."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from enum import StrEnum
 from pathlib import Path
 from typing import TypeVar
 
@@ -26,6 +27,13 @@ from mdlcad.synthesis.netlist import Netlist
 T = TypeVar("T")
 
 
+class Outlines(StrEnum):
+    """What DXF files draw: parts as designed, or what the cutter's middle has to follow to leave them so."""
+
+    AS_DESIGNED = "as designed"
+    KERF = "kerf"
+
+
 @dataclass(frozen=True, slots=True)
 class Job:
     """What was asked for.
@@ -44,6 +52,12 @@ class Job:
     folder: Path
     workers: int
     size: Size = SMALLEST
+    outlines: Outlines = Outlines.AS_DESIGNED
+
+    @property
+    def kerf_mm(self) -> float:
+        """Kerf that DXF files allow for."""
+        return self.process.machine.kerf if self.outlines is Outlines.KERF else 0.0
 
 
 @dataclass(frozen=True, slots=True)

@@ -146,7 +146,7 @@ def _export(job: Job, state: State, progress: Progress) -> State:
     from mdlcad.export.files import write_files  # the CAD kernel takes seconds to load; early stages need not wait
 
     name, bodies = need(state.network).design, need(state.bodies)
-    return replace(state, files=write_files(name, bodies, job.folder, job.workers, progress))
+    return replace(state, files=write_files(name, bodies, job.kerf_mm, job.folder, job.workers, progress))
 
 
 def _lvs(job: Job, state: State, progress: Progress) -> State:
@@ -332,6 +332,7 @@ STEPS: tuple[Step, ...] = (
         lambda s: f"{len(s.files)} files",
         None,
         lambda job, state, files: replace(state, files=files),
+        ("kerf_mm",),
     ),
     Step(
         "extraction",

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-import shapely
 from shapely import Polygon
 
 from mdlcad.artefact import checksum, load
 from mdlcad.errors import InputError, SignoffError, UsageError
 from mdlcad.export.mesh import check_stl
+from mdlcad.export.solid import plate_section
 from mdlcad.flow.folder import REPORT
 from mdlcad.flow.outline import port_places
 from mdlcad.flow.plans import GRID_STEPS
@@ -100,9 +100,9 @@ def _verify(folder: Path, report: Report, workers: int, say: Callable[[str], Non
     step("step", check_bodies(bodies, found))
     stl = []
     for plate, members in plates_of(bodies).items():
-        area = shapely.union_all([body.section for body in members], grid_size=1e-4).area
+        data = (folder / "plates" / f"{plate}.stl").read_bytes()
         try:
-            check_stl(plate, (folder / "plates" / f"{plate}.stl").read_bytes(), area * members[0].thickness)
+            check_stl(plate, data, plate_section(members), members[0].thickness)
         except SignoffError as problem:
             stl.append(str(problem))
     step("stl", stl)

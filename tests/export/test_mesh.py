@@ -31,14 +31,25 @@ def test_bodies_that_share_an_edge_become_one_piece():
 
 
 def test_stl_check_catches_a_missing_triangle_and_a_wrong_volume():
-    data = stl_plate("unit", few_bodies()[:1])
+    ring = few_bodies()[:1]
+    data, section = stl_plate("unit", ring), plate_section(ring)
     count = int(np.frombuffer(data[80:84], "<u4")[0])
     holed = data[:80] + np.uint32(count - 1).tobytes() + data[84:-50]
     with pytest.raises(SignoffError, match="watertight"):
-        check_stl("unit", holed, 112.0)
-    check_stl("unit", data, 112.0)
+        check_stl("unit", holed, section, 2.0)
+    check_stl("unit", data, section, 2.0)
     with pytest.raises(SignoffError, match="mm3"):
-        check_stl("unit", data, 112.001)
+        check_stl("unit", data, section, 2.0001)
+
+
+def test_stl_check_catches_a_hole_that_is_filled_and_a_piece_too_many():
+    ring = few_bodies()[0].section
+    plain = box(0, 0, 10, ring.area / 10.0)
+    with pytest.raises(SignoffError, match="1 pieces and the Euler number 2, its section 1 pieces with 1 holes"):
+        check_stl("unit", stl_plate("unit", [body("plain", plain)]), [ring], 2.0)
+    halves = [body("a", box(0, 0, 4, 5)), body("b", box(5, 0, 9, 5))]
+    with pytest.raises(SignoffError, match="2 pieces"):
+        check_stl("unit", stl_plate("unit", halves), [box(0, 0, 8, 5)], 2.0)
 
 
 def test_sections_that_touch_in_one_point_are_refused_not_written():
