@@ -12,14 +12,24 @@ from mdlcad.artefact import write_atomic
 from mdlcad.export.drawing import dxf_plate, svg_plate
 from mdlcad.export.mesh import stl_plate, threemf_device
 from mdlcad.export.step import step_assembly
+from mdlcad.mechanics import Process
 from mdlcad.parts.body import Body
 from mdlcad.parts.plates import plates_of
+from mdlcad.parts.tiles import tiles_of
 
 
 def write_files(
-    design: str, bodies: Sequence[Body], kerf_mm: float, folder: Path, workers: int, progress: Callable[[str], None]
+    design: str,
+    bodies: Sequence[Body],
+    process: Process,
+    kerf_mm: float,
+    folder: Path,
+    workers: int,
+    progress: Callable[[str], None],
 ) -> tuple[str, ...]:
     """Write NAME.step, NAME.3mf and plates/PLATE.{step,stl,dxf,svg}; the paths written, relative to ``folder``.
+
+    Plates larger than the machine's bed also have tiles/PLATE-N.{stl,dxf,svg}.
 
     STEP files take most of the time; with more than one worker the device's is made in a process beside this one, which
     makes those of the plates meanwhile. ``kerf_mm`` is what DXF files allow for.
@@ -44,9 +54,14 @@ def write_files(
         put(f"{design}.3mf", threemf_device(design, bodies))
         for plate, members in plates.items():
             progress(f"plate {plate}")
-            put(f"plates/{plate}.stl", stl_plate(plate, members))
-            put(f"plates/{plate}.svg", svg_plate(plate, members))
-            put(f"plates/{plate}.dxf", dxf_plate(members, kerf_mm))
+            tiles = tiles_of(plate, members, process).tiles
+            for stem, cut in [
+                (f"plates/{plate}", members),
+                *((f"tiles/{tile.name}", tile.bodies) for tile in tiles if tile.name != plate),
+            ]:
+                put(f"{stem}.stl", stl_plate(plate, cut))
+                put(f"{stem}.svg", svg_plate(plate, cut))
+                put(f"{stem}.dxf", dxf_plate(cut, kerf_mm))
             put(f"plates/{plate}.step", step_assembly(plate, members))
         progress("STEP of the device")
         put(f"{design}.step", whole())

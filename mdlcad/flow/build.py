@@ -155,7 +155,7 @@ def _chosen(plan: tuple[Step, ...], first: str | None, last: str | None) -> tupl
         if step.name not in _LOADED:
             latest = [name for name in names if name in _LOADED][-1]
             raise UsageError(f"--from {first}: a build can start again from any stage up to the one after {latest}")
-    if first and not set(plan[start].needs) <= set(names[:start]):
+    if first and not plan[start].makes:
         before = names[start - 1]
         raise UsageError(f"--from {first}: is made together with {before}; start from {before}, or after {first}")
     return plan[start:stop], plan[:start]

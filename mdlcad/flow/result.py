@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from mdlcad.flow.state import Job, State
+from mdlcad.parts.body import Body
 from mdlcad.parts.bom import bill_of_materials
 from mdlcad.parts.plates import plates_of
+from mdlcad.parts.tiles import tiles_of
 from mdlcad.report.make import behaviour_of, extent_of, hashes_of, mechanics_of
 from mdlcad.report.report import Lvs, Report, StageRecord, Stopped
 
@@ -33,13 +35,18 @@ def make_report(
         drive=state.drive,
         extent_mm=extent_of(bodies) if bodies else None,
         plates=tuple(plates_of(bodies)) if bodies else (),
-        tiles=len(plates_of(bodies)) if bodies else None,
+        tiles=_tiles(bodies, job) if bodies else None,
         bom=bill_of_materials(bodies, job.process) if bodies else None,
         stages=records,
         stopped=stopped,
         failures=tuple(failures(state, stopped)),
         files=hashes_of(job.folder),
     )
+
+
+def _tiles(bodies: tuple[Body, ...], job: Job) -> int:
+    """How many pieces of work the plates are for the machine's bed."""
+    return sum(len(tiles_of(plate, members, job.process).tiles) for plate, members in plates_of(bodies).items())
 
 
 def failures(state: State, stopped: Stopped | None) -> list[str]:

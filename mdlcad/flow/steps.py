@@ -146,7 +146,8 @@ def _export(job: Job, state: State, progress: Progress) -> State:
     from mdlcad.export.files import write_files  # the CAD kernel takes seconds to load; early stages need not wait
 
     name, bodies = need(state.network).design, need(state.bodies)
-    return replace(state, files=write_files(name, bodies, job.kerf_mm, job.folder, job.workers, progress))
+    files = write_files(name, bodies, job.process, job.kerf_mm, job.folder, job.workers, progress)
+    return replace(state, files=files)
 
 
 def _lvs(job: Job, state: State, progress: Progress) -> State:
@@ -332,7 +333,7 @@ STEPS: tuple[Step, ...] = (
         lambda s: f"{len(s.files)} files",
         None,
         lambda job, state, files: replace(state, files=files),
-        ("kerf_mm",),
+        ("process", "kerf_mm"),
     ),
     Step(
         "extraction",

@@ -23,7 +23,8 @@ _RULES = {
     "containment": ("nothing but tabs reaches outside the boundary", "mm²"),
     "min_wall": ("no wall is thinner than the machine makes", "mm"),
     "min_gap": ("no gap is narrower than the machine makes", "mm"),
-    "bed": ("every piece fits the machine's bed", "mm"),
+    "bed": ("every plate or tile fits the machine's bed", "mm"),
+    "seam": ("no seam between tiles crosses or comes near a flexure or a carrier", ""),
     "unrealised_coupling": ("every coupling of the network has its part", ""),
     "carrier_stiffness": ("a carrier is stiff enough for the couplers it drives", "times"),
     "strain": ("no flexure is strained beyond its limit in repeated use", ""),
@@ -114,7 +115,8 @@ def _nearest(report: Report, process: Process) -> dict[str, str]:
         widest = max(bom.sheets, key=lambda line: (max(line.size_mm), line.plate))
         bed = process.machine.bed
         size = f"{widest.size_mm[0]:g} × {widest.size_mm[1]:g} mm"
-        found["bed"] = f"{size} (bed {bed[0]:g} × {bed[1]:g}): {widest.plate}"
+        tiled = f", {report.tiles} tiles" if report.tiles and report.tiles > len(report.plates) else ""
+        found["bed"] = f"{size} (bed {bed[0]:g} × {bed[1]:g}): {widest.plate}{tiled}"
     return found
 
 

@@ -19,7 +19,7 @@ from mdlcad.parts.body import Body, BodyKind
 
 # Overlaps and shortfalls below this are rounding of the drawing grid (1e-4 mm).
 TOLERANCE_MM = 5e-4
-RULES = ("overlap", "swept_clearance", "containment", "min_wall", "min_gap", "bed", "unrealised_coupling")
+RULES = ("overlap", "swept_clearance", "containment", "min_wall", "min_gap", "bed", "seam", "unrealised_coupling")
 
 
 @dataclass(frozen=True, slots=True)
@@ -178,17 +178,4 @@ def check_cut(plate: str, bodies: Sequence[Body], min_wall_mm: float, min_gap_mm
                         f"thinner than {limit:.3f} mm on plate {plate}",
                     )
                 )
-    return findings
-
-
-def check_bed(bodies: Sequence[Body], bed_mm: tuple[float, float]) -> list[Finding]:
-    """Rule ``bed``: every plate's pieces fit the machine's bed, either way round (tiling comes later)."""
-    findings = []
-    for body in bodies:
-        x0, y0, x1, y1 = body.section.bounds
-        width, height = x1 - x0, y1 - y0
-        if not ((width <= bed_mm[0] and height <= bed_mm[1]) or (width <= bed_mm[1] and height <= bed_mm[0])):
-            findings.append(
-                Finding("bed", (body.name,), x0, y0, max(width, height), max(bed_mm), "larger than the machine's bed")
-            )
     return findings

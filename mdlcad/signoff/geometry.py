@@ -14,10 +14,12 @@ from mdlcad.network.model import Network
 from mdlcad.parts.body import Body
 from mdlcad.parts.plates import plates_of
 from mdlcad.parts.stiffness import CarrierStiffness, carrier_faults
+from mdlcad.parts.tiles import tiles_of
 from mdlcad.placement.placement import Placement
 from mdlcad.routing.check import check_layout
 from mdlcad.routing.layout import Layout
-from mdlcad.signoff.drc import RULES, Finding, check_bed, check_containment, check_cut, check_motion
+from mdlcad.signoff.drc import RULES, Finding, check_containment, check_cut, check_motion
+from mdlcad.signoff.seams import check_tiles
 from mdlcad.signoff.summary import DesignRules
 
 CARRIER_RULES = ("carrier_stiffness", "shuttle_tilt")
@@ -45,7 +47,7 @@ def check_geometry(
     findings += check_containment(bodies, Polygon(placement.boundary))
     for plate, members in plates_of(bodies).items():
         findings += check_cut(plate, members, process.machine.min_wall, process.machine.min_gap)
-    findings += check_bed(bodies, process.machine.bed)
+        findings += check_tiles(members, tiles_of(plate, members, process), process.machine.bed, process.pin.wall)
     where = {mass.mass: (mass.x, mass.y) for mass in placement.masses}
     findings += [
         Finding(item.rule, item.names, item.x, item.y, 0.0, 0.0, item.message)

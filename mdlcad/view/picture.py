@@ -13,8 +13,10 @@ from numpy.typing import NDArray
 
 from mdlcad.export.solid import prism, triangles
 from mdlcad.parts.body import Body
+from mdlcad.view.camera import VIEW_ANGLE, Preset, pose
 
 _WINDOW = (1600, 1200)
+_TALL = (1200, 1800)  # a stack drawn apart is higher than wide
 # VTK asks for an X server first and says so on the terminal when there is none
 vtk.vtkLogger.SetStderrVerbosity(vtk.vtkLogger.VERBOSITY_ERROR)
 if "DISPLAY" not in os.environ:
@@ -52,20 +54,21 @@ def write_picture(
     bodies: Sequence[Body], path: Path, *, from_above: bool, lift_mm: dict[str, float] | None = None
 ) -> None:
     """Render ``bodies`` to a PNG: from above (parallel, to scale) or from a raised corner."""
-    plotter = pyvista.Plotter(off_screen=True, window_size=list(_WINDOW))
+    size = _TALL if lift_mm else _WINDOW
+    plotter = pyvista.Plotter(off_screen=True, window_size=list(size))
     plotter.set_background("white")
-    plotter.add_mesh(
-        device_mesh(bodies, lift_mm), scalars="rgb", rgb=True, smooth_shading=False, specular=0.1, ambient=0.25
-    )
+    mesh = device_mesh(bodies, lift_mm)
+    plotter.add_mesh(mesh, scalars="rgb", rgb=True, smooth_shading=False, specular=0.1, ambient=0.25)
     plotter.enable_anti_aliasing("ssaa")
     if from_above:
         plotter.view_xy()
         plotter.enable_parallel_projection()
         plotter.camera.zoom(1.3)
     else:
-        plotter.camera_position = "iso"
-        plotter.camera.azimuth = -15.0
-        plotter.camera.elevation = 5.0
-        plotter.camera.zoom(1.0 if lift_mm else 1.3)
+        # from the front right and well above, whatever the outline: one that looks along an edge shows lines
+        seen = pose(Preset.ISO, np.asarray(mesh.points), size[0] / size[1])
+        plotter.camera.view_angle = VIEW_ANGLE
+        plotter.camera.focal_point, plotter.camera.position, plotter.camera.up = seen.focus, seen.position, seen.up
+        plotter.renderer.ResetCameraClippingRange()
     plotter.screenshot(str(path))
     plotter.close()

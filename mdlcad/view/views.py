@@ -10,7 +10,7 @@ from mdlcad.parts.plates import plates_of
 from mdlcad.view.picture import write_picture
 
 # Exploded by this share of the device's larger side per plate: far enough apart to see between, whatever the size.
-_EXPLODE = 0.1
+_EXPLODE = 0.2
 
 
 def write_views(bodies: Sequence[Body], folder: Path, progress: Callable[[str], None]) -> tuple[str, ...]:

@@ -5,7 +5,7 @@ from shapely import box
 from shapely.affinity import translate
 
 from mdlcad.parts.body import BodyKind
-from mdlcad.signoff.drc import check_bed, check_containment, check_cut, check_motion, swept
+from mdlcad.signoff.drc import check_containment, check_cut, check_motion, swept
 from tests.export.bodies import body
 
 GAP = 0.6
@@ -94,8 +94,3 @@ def test_walls_thinner_than_the_machine_makes(width, expected):
 def test_gaps_narrower_than_the_machine_makes(gap, expected):
     pair = [body("a", box(0, 0, 5, 5)), body("b", box(5 + gap, 0, 10, 5))]
     assert rules(check_cut("unit", pair, 0.5, 0.4)) == expected
-
-
-def test_a_plate_larger_than_the_bed_either_way_round():
-    assert check_bed([body("a", box(0, 0, 300, 500))], (600.0, 400.0)) == []
-    assert rules(check_bed([body("a", box(0, 0, 450, 500))], (600.0, 400.0))) == ["bed"]
