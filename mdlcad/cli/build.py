@@ -4,8 +4,16 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from mdlcad.cli.kinds import Commands, bed, jobs, length, say, seed, verdict
+from mdlcad.cli.kinds import Commands, bed, count, jobs, length, say, seed, verdict
+
+if TYPE_CHECKING:
+    from mdlcad.placement.placers import Placer
+
+PLACERS = ("anneal", "paper")
+"""The names of ``PlacerName``, whose packages take longer to load than help should."""
+_PAPERS = ("iterations", "iterations_pinned", "uncross", "uncross_sweeps", "uncross_radius", "uncross_tests")
 
 
 def register(commands: Commands[argparse.ArgumentParser]) -> None:
@@ -28,8 +36,45 @@ def register(commands: Commands[argparse.ArgumentParser]) -> None:
     build.add_argument(
         "--fresh", action="store_true", help="rerun every stage, also those whose inputs are as in the folder's build"
     )
+    _add_placement(build.add_argument_group("placement"))
+    _add_paper(build.add_argument_group("options of --placer paper", "as the paper has them"))
     _add_synthesis(build.add_argument_group("synthesis options", "of libraries of kind two_phase"))
     build.set_defaults(run=_run)
+
+
+def _add_placement(group: argparse._ArgumentGroup) -> None:
+    group.add_argument(
+        "--like",
+        type=Path,
+        metavar="DIR",
+        help="keep places and routes of that earlier build, as far as the program still has what was there",
+    )
+    group.add_argument(
+        "--seeds",
+        type=count,
+        default=1,
+        metavar="N",
+        help="try N seeds, --seed and those after it, on --jobs processors; the best is kept (%(default)s)",
+    )
+    group.add_argument(
+        "--placer",
+        choices=PLACERS,
+        default=PLACERS[0],
+        help="who decides where masses go: ours, or the paper's method (%(default)s)",
+    )
+
+
+def _add_paper(group: argparse._ArgumentGroup) -> None:
+    group.add_argument("--iterations", type=count, metavar="N", help="of the first force-directed layout (100)")
+    group.add_argument("--iterations-pinned", type=count, metavar="N", help="of the second, with the ports held (100)")
+    group.add_argument(
+        "--uncross", action=argparse.BooleanOptionalAction, help="remove crossings by swapping masses (--uncross)"
+    )
+    group.add_argument("--uncross-sweeps", type=count, metavar="N", help="most scans of all pairs to swap (30)")
+    group.add_argument(
+        "--uncross-radius", type=float, metavar="R", help="how far apart swapped masses may be, sites (3)"
+    )
+    group.add_argument("--uncross-tests", type=count, metavar="N", help="most pairs tested in all (1000000)")
 
 
 def _add_synthesis(group: argparse._ArgumentGroup) -> None:
@@ -71,8 +116,39 @@ def _run(options: argparse.Namespace) -> int:
             size=Size(options.pitch, options.fit),
             outlines=Outlines.KERF if options.kerf else Outlines.AS_DESIGNED,
             reuse=Reuse.FRESH if options.fresh else Reuse.KEEP,
+            placer=_placer(options),
+            seeds=options.seeds,
+            like=options.like,
         ),
         say,
     )
     say(f"written to {place}")
     return verdict(broken)
+
+
+def _placer(options: argparse.Namespace) -> Placer:
+    """The placer that was asked for, with its options.
+
+    Raises:
+        UsageError: an option of the paper's placer is given without it.
+    """
+    from mdlcad.errors import UsageError
+    from mdlcad.placement.placers import ANNEAL, PaperPlacer
+    from mdlcad.placement.sites import PaperOptions
+
+    given = {name: getattr(options, name) for name in _PAPERS if getattr(options, name) is not None}
+    if options.placer == ANNEAL.name:
+        for name in given:
+            raise UsageError(f"--{name.replace('_', '-')}: is an option of --placer paper; leave it out, or add that")
+        return ANNEAL
+    usual = PaperOptions()
+    removes = given.get("uncross", True)
+    return PaperPlacer(
+        PaperOptions(
+            iterations=given.get("iterations", usual.iterations),
+            iterations_pinned=given.get("iterations_pinned", usual.iterations_pinned),
+            sweeps=given.get("uncross_sweeps", usual.sweeps) if removes else 0,
+            radius=given.get("uncross_radius", usual.radius),
+            tests=given.get("uncross_tests", usual.tests),
+        )
+    )

@@ -47,6 +47,14 @@ def jobs(text: str) -> int:
     return value
 
 
+def count(text: str) -> int:
+    """A number of times."""
+    value = int(text)
+    if not 1 <= value <= 10**9:
+        raise argparse.ArgumentTypeError("a whole number from 1 on")
+    return value
+
+
 def say(line: str) -> None:
     """One line to the user, at once."""
     print(line, flush=True)

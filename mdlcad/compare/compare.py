@@ -11,7 +11,6 @@ from mdlcad.compare.bodies import bodies_of_both
 from mdlcad.compare.change import Comparison, Level, LevelState, Side, Verdict
 from mdlcad.compare.files import file_changes
 from mdlcad.compare.folders import Build, NotComparable, open_build, read
-from mdlcad.compare.matching import renamed_masses
 from mdlcad.compare.netlist import netlist_changes
 from mdlcad.compare.network import network_changes
 from mdlcad.compare.pair import Findings, Pair
@@ -22,6 +21,7 @@ from mdlcad.compare.program import program_changes
 from mdlcad.compare.routing import routing_changes
 from mdlcad.compare.settings import setting_changes
 from mdlcad.errors import UsageError
+from mdlcad.network.matching import renamed_masses
 from mdlcad.network.model import Network
 
 DEFAULT_TOLERANCE_UM = 1.0

@@ -13,6 +13,7 @@ import msgspec
 from mdlcad import __version__
 from mdlcad.artefact import checksum, to_json, write_atomic
 from mdlcad.errors import InputError, SignoffError, UsageError
+from mdlcad.flow.earlier import load_earlier
 from mdlcad.flow.folder import REPORT, new_folder, resting_place
 from mdlcad.flow.inputs import digests_of, inputs_of
 from mdlcad.flow.kept import Earlier, Reuse, earlier_build
@@ -24,6 +25,7 @@ from mdlcad.flow.steps import STEPS
 from mdlcad.language import anchored
 from mdlcad.mapping import CELLS_FILE, Library, MappingRequest, load_library, recorded_library
 from mdlcad.mechanics import load_process
+from mdlcad.placement.placers import ANNEAL, Placer
 from mdlcad.report.page import write_page
 from mdlcad.report.report import Origin, StageRecord, Stopped
 from mdlcad.routing.driver import SMALLEST, Size
@@ -38,6 +40,8 @@ class Request:
 
     Attributes:
         cells: name or path of the cell library; None for the default, or with ``first`` the one in the folder.
+        placer: decides who sits where. seeds: how many seeds placement tries, from ``seed`` on.
+        like: folder of the build that this one is to be like.
         reuse: whether stages may be taken over from the build that now is where this one goes.
     """
 
@@ -53,6 +57,9 @@ class Request:
     size: Size = SMALLEST
     outlines: Outlines = Outlines.AS_DESIGNED
     reuse: Reuse = Reuse.KEEP
+    placer: Placer = ANNEAL
+    seeds: int = 1
+    like: Path | None = None
 
 
 def build(request: Request, say: Callable[[str], None]) -> tuple[Path, list[str]]:
@@ -73,7 +80,19 @@ def build(request: Request, say: Callable[[str], None]) -> tuple[Path, list[str]
         )
     source = None if loaded else request.source
     place = request.place or (request.source if loaded else Path("exports") / _design_name(request.source))
-    job = Job(source, library, process, request.seed, request.source, request.workers, request.size, request.outlines)
+    job = Job(
+        source,
+        library,
+        process,
+        request.seed,
+        request.source,
+        request.workers,
+        request.size,
+        request.outlines,
+        request.placer,
+        request.seeds,
+        None if request.like is None else load_earlier(request.like, library, process),
+    )
     state = _load(job, loaded)
     earlier = earlier_build(place, request.reuse)
     made: dict[str, str] = {}

@@ -28,6 +28,9 @@ _SETTINGS: dict[str, Callable[[Job], bytes]] = {
     "seed": lambda job: to_json(job.seed),
     "kerf_mm": lambda job: to_json(job.kerf_mm),
     "size": lambda job: to_json(job.size),
+    "placer": lambda job: to_json([job.placer.name, job.placer]),
+    "seeds": lambda job: to_json(job.seeds),
+    "like": lambda job: to_json(job.like and job.like.checksum),
 }
 """What a step may read of a ``Job`` beside the folder and the number of workers, which change no result."""
 

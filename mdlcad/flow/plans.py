@@ -5,29 +5,40 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from mdlcad.artefact import to_json
+from mdlcad.artefact import load, to_json
 from mdlcad.errors import SignoffError, UsageError
+from mdlcad.flow.placing import Work, best_of
 from mdlcad.flow.state import Job, State, need
-from mdlcad.flow.step import Step, from_artefact
-from mdlcad.flow.steps import STEPS, draw_placement
+from mdlcad.flow.step import Step
+from mdlcad.flow.steps import SEARCH_FILE, STEPS, draw_placement, how_placed
 from mdlcad.mapping import Library
 from mdlcad.mapping.two_phase import TwoPhaseLibrary
 from mdlcad.placement.check_grid import check_grid
-from mdlcad.placement.unit_grid import GridPlacement, Placer, Seating, place_on_grid
+from mdlcad.placement.unit_grid import GridPlacement
+from mdlcad.report.report import Search
 
 
 def _place(job: Job, state: State, progress: Callable[[str], None]) -> State:
     network, boundary, ports = need(state.network), need(state.outline).boundary, need(state.outline).ports
-    grid = place_on_grid(network, boundary, ports, Placer.ANNEAL, Seating.ON_BOUNDARY, job.seed)
+    work = Work(network, boundary, ports, job.placer, None, job.size, job.like)
+    best = best_of(work, job.seed, job.seeds, job.workers, progress)
+    grid = best.result
+    assert isinstance(grid, GridPlacement)
     found = check_grid(network, grid, boundary, ports)
     if found:
         raise SignoffError("; ".join(found[:3]))
-    return replace(state, grid=grid)
+    return replace(state, grid=grid, search=best.search)
 
 
 def _words(state: State) -> str:
     grid = need(state.grid)
-    return f"{len(grid.masses)} masses on the grid, length {grid.length:.0f}, {grid.crossings} crossings"
+    worth = f"length {grid.length:.0f}, {grid.crossings} crossings"
+    return f"{len(grid.masses)} masses on the grid, {worth}{how_placed(state)}"
+
+
+def _restore(job: Job, state: State, files: tuple[str, ...]) -> State:
+    grid, search = load(job.folder, "placement.json", GridPlacement), load(job.folder, SEARCH_FILE, Search)
+    return replace(state, grid=grid, search=search)
 
 
 GRID_STEPS: tuple[Step, ...] = (
@@ -35,12 +46,12 @@ GRID_STEPS: tuple[Step, ...] = (
     Step(
         "placement",
         ("outline", "network"),
-        ("grid",),
+        ("grid", "search"),
         _place,
         _words,
         lambda s: to_json(s.grid),
-        from_artefact("grid", GridPlacement, "placement"),
-        ("seed",),
+        _restore,
+        ("seed", "placer", "seeds", "like"),
         draw=draw_placement,
     ),
 )

@@ -41,6 +41,9 @@ def make_report(
         stopped=stopped,
         failures=tuple(failures(state, stopped)),
         files=hashes_of(job.folder),
+        placer=None if state.search is None else state.search.placer,
+        seeds=None if state.search is None else state.search.seeds,
+        like=None if state.search is None else state.search.like,
     )
 
 

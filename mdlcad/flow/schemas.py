@@ -20,7 +20,7 @@ from mdlcad.parts.store import Parts
 from mdlcad.placement.placement import Placement
 from mdlcad.placement.unit_grid import GridPlacement
 from mdlcad.proof.outcome import Proof
-from mdlcad.report.report import Report
+from mdlcad.report.report import Report, Search
 from mdlcad.routing.layout import Layout
 from mdlcad.scenario.result import ScenarioResult
 from mdlcad.signoff.lvs import LvsResult
@@ -37,6 +37,7 @@ ARTEFACTS: dict[str, Any] = {
     "placement-on-grid": GridPlacement,
     "cells-parametron": Library,
     "cells-two_phase": TwoPhaseLibrary,
+    "search": Search,
     "layout": Layout,
     "parts": Parts,
     "drc": DesignRules,

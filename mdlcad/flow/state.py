@@ -7,6 +7,7 @@ from enum import StrEnum
 from pathlib import Path
 from typing import TypeVar
 
+from mdlcad.flow.earlier import EarlierBuild
 from mdlcad.flow.outline import Outline
 from mdlcad.language import Device
 from mdlcad.mapping import Library
@@ -16,8 +17,10 @@ from mdlcad.network.model import Network
 from mdlcad.parts.body import Body
 from mdlcad.parts.stiffness import CarrierStiffness
 from mdlcad.placement.placement import Placement
+from mdlcad.placement.placers import ANNEAL, Placer
 from mdlcad.placement.unit_grid import GridPlacement
 from mdlcad.proof.outcome import Proof
+from mdlcad.report.report import Search
 from mdlcad.routing.driver import SMALLEST, Size
 from mdlcad.routing.layout import Layout
 from mdlcad.signoff.lvs import LvsResult
@@ -43,6 +46,8 @@ class Job:
         folder: where this build writes; moved to its place when it is whole.
         workers: how many processors may be used; never changes a result.
         size: how large the device may be.
+        placer: decides who sits where. seeds: how many seeds placement tries, from ``seed`` on.
+        like: the build that this one is to be like.
     """
 
     source: Path | None
@@ -53,6 +58,9 @@ class Job:
     workers: int
     size: Size = SMALLEST
     outlines: Outlines = Outlines.AS_DESIGNED
+    placer: Placer = ANNEAL
+    seeds: int = 1
+    like: EarlierBuild | None = None
 
     @property
     def kerf_mm(self) -> float:
@@ -66,6 +74,7 @@ class State:
 
     Attributes:
         grid: what the placement is with a library that has no parts yet.
+        search: how the placement was found.
         files, pictures: paths in the folder, of the files for other programs and of the views.
     """
 
@@ -77,6 +86,7 @@ class State:
     sizing: Sizing | None = None
     placement: Placement | None = None
     grid: GridPlacement | None = None
+    search: Search | None = None
     layout: Layout | None = None
     bodies: tuple[Body, ...] | None = None
     carriers: tuple[CarrierStiffness, ...] = ()

@@ -13,6 +13,7 @@ from shapely import Polygon
 from mdlcad.artefact import load, to_json, write_atomic
 from mdlcad.errors import Diagnostic, InputError, SignoffError, UsageError
 from mdlcad.flow.outline import outline_of, place_of
+from mdlcad.flow.placing import Placed, Work, best_of
 from mdlcad.flow.state import Job, State, need
 from mdlcad.flow.step import Progress, Step, from_artefact
 from mdlcad.language import Device, read_device
@@ -21,15 +22,15 @@ from mdlcad.mechanics import Sizing, size
 from mdlcad.mechanics.drive import DriveLoads, drive_loads
 from mdlcad.network.model import CouplingKind, Network
 from mdlcad.parts import build_parts
-from mdlcad.parts.stiffness import carrier_faults, carrier_stiffnesses
+from mdlcad.parts.stiffness import carrier_stiffnesses
 from mdlcad.parts.store import Parts, bodies_of, records_of
 from mdlcad.placement.placement import Placement
 from mdlcad.proof.outcome import Proof
 from mdlcad.proof.prove import prove
 from mdlcad.proof.reference import build_reference
-from mdlcad.routing import find_lack, place_and_route
+from mdlcad.report.report import Search
+from mdlcad.routing import find_lack
 from mdlcad.routing.drawing import draw_layout
-from mdlcad.routing.judge import Objection
 from mdlcad.routing.layout import Layout
 from mdlcad.signoff.extraction import extract
 from mdlcad.signoff.geometry import check_geometry
@@ -38,6 +39,9 @@ from mdlcad.signoff.readback import read_step
 from mdlcad.signoff.summary import DesignRules
 from mdlcad.synthesis import synthesise
 from mdlcad.synthesis.netlist import Netlist
+
+SEARCH_FILE = "search.json"
+"""In a build folder: how its placement was found."""
 
 
 def _read(job: Job, state: State, progress: Progress) -> State:
@@ -55,7 +59,11 @@ def _synthesise(job: Job, state: State, progress: Progress) -> State:
 
 
 def _map(job: Job, state: State, progress: Progress) -> State:
-    return replace(state, network=map_netlist(need(state.netlist), job.library))
+    like, netlist = job.like, need(state.netlist)
+    if like is not None and like.netlist == netlist:
+        return replace(state, network=like.network)
+    before = None if like is None else like.network
+    return replace(state, network=map_netlist(netlist, job.library, earlier=before))
 
 
 def _prove(job: Job, state: State, progress: Progress) -> State:
@@ -90,24 +98,10 @@ def _place_and_route(job: Job, state: State, progress: Progress) -> State:
     if lack is not None:
         where = place_of(device, lack.bit) if lack.bit else device.boundary[0].where
         raise InputError([Diagnostic(device.file, where.line, where.column, lack.what, lack.mend)])
-    sources = {coupling.name: coupling.source for coupling in network.couplings}
-
-    def judge(placement: Placement, layout: Layout) -> tuple[Objection, ...]:
-        stiffnesses = carrier_stiffnesses(network, placement, layout, sizing, job.process)
-        faults = carrier_faults(stiffnesses, sizing, job.process)
-        return tuple(Objection(sources[fault.coupling], fault.coupling, fault.message) for fault in faults)
-
-    placement, layout = place_and_route(
-        network,
-        boundary,
-        ports,
-        sizing.rules,
-        job.seed,
-        progress,
-        judge,
-        job.size,
-    )
-    return replace(state, placement=placement, layout=layout)
+    work = Work(network, boundary, ports, job.placer, (sizing, job.process), job.size, job.like)
+    best = best_of(work, job.seed, job.seeds, job.workers, progress)
+    assert isinstance(best.result, Placed)
+    return replace(state, placement=best.result.placement, layout=best.result.layout, search=best.search)
 
 
 def _build_parts(job: Job, state: State, progress: Progress) -> State:
@@ -176,9 +170,10 @@ def _draw_placed(job: Job, state: State) -> None:
 
 
 def draw_placement(job: Job, state: State) -> None:
-    """Write views/placement.svg and .png."""
+    """Write how the placement was found, and views/placement.svg and .png."""
     from mdlcad.view.placement import write_placement_views  # the plotting library takes a second to load
 
+    write_atomic(job.folder / SEARCH_FILE, to_json(state.search))
     write_placement_views(need(state.network), job.folder)
 
 
@@ -200,7 +195,8 @@ def _behaviour_words(state: State) -> str:
 
 def _restore_placed(job: Job, state: State, files: tuple[str, ...]) -> State:
     placement = load(job.folder, "placement.json", Placement)
-    return replace(state, placement=placement, layout=load(job.folder, "layout.json", Layout))
+    layout, search = load(job.folder, "layout.json", Layout), load(job.folder, SEARCH_FILE, Search)
+    return replace(state, placement=placement, layout=layout, search=search)
 
 
 def _restore_parts(job: Job, state: State, files: tuple[str, ...]) -> State:
@@ -211,6 +207,16 @@ def _restore_parts(job: Job, state: State, files: tuple[str, ...]) -> State:
 def _restore_extraction(job: Job, state: State, files: tuple[str, ...]) -> State:
     lvs, extracted = load(job.folder, "extraction.json", tuple[LvsResult, Proof])
     return replace(state, lvs=lvs, extracted=extracted)
+
+
+def how_placed(state: State) -> str:
+    """How the placement was found, to follow what it is; nothing if with one seed and like no other."""
+    words, search = "", need(state.search)
+    if search.like is not None:
+        words += f", {search.like.kept - search.like.moved} of {search.like.kept} kept masses in place"
+    if search.seeds is not None:
+        words += f", seed {search.seeds.won} of {len(search.seeds.tried)}"
+    return words
 
 
 STEPS: tuple[Step, ...] = (
@@ -244,7 +250,7 @@ STEPS: tuple[Step, ...] = (
         ),
         lambda s: to_json(s.network),
         from_artefact("network", Network),
-        ("library",),
+        ("library", "like"),
     ),
     Step(
         "proof",
@@ -270,12 +276,12 @@ STEPS: tuple[Step, ...] = (
     Step(
         "placement",
         ("outline", "network", "sizing"),
-        ("placement", "layout"),
+        ("placement", "layout", "search"),
         _place_and_route,
-        lambda s: f"{len(need(s.placement).column_x)} columns x {len(need(s.placement).row_y)} rows",
+        lambda s: f"{len(need(s.placement).column_x)} columns x {len(need(s.placement).row_y)} rows{how_placed(s)}",
         lambda s: to_json(s.placement),
         _restore_placed,
-        ("process", "seed", "size"),
+        ("process", "seed", "size", "placer", "seeds", "like"),
         ("device",),
         _draw_placed,
     ),

@@ -132,8 +132,8 @@ class _Model:
         cost: list[cp_model.LinearExprT] = [CYCLE_COST * self.cycles]
         for key, options in sorted(self.graph.options.items()):
             cost.append(MASS_COST * self.present[key])
-            for option, chosen in zip(options, self.chosen[key], strict=True):
-                weight = COUPLING_COST * sum(abs(w) for w in option.function.weights)
+            for number, (option, chosen) in enumerate(zip(options, self.chosen[key], strict=True)):
+                weight = COUPLING_COST * sum(abs(w) for w in option.function.weights) + self.graph.charge(key, number)
                 if weight:
                     cost.append(weight * chosen)
         if self.graph.registers:

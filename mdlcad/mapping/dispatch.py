@@ -59,17 +59,20 @@ def recorded_library(folder: Path) -> Library:
     return load(folder, CELLS_FILE, parametron.Library)
 
 
-def map_netlist(netlist: Netlist, library: Library, effort: mapper.Effort | None = None) -> Network:
+def map_netlist(
+    netlist: Netlist, library: Library, effort: mapper.Effort | None = None, earlier: Network | None = None
+) -> Network:
     """Map ``netlist`` to masses and springs of ``library``.
 
-    The result is a function of the arguments alone; ``effort`` is for the parametron mapper alone.
+    The result is a function of the arguments alone; ``effort`` and ``earlier`` (a network to be like) are for the
+    parametron mapper alone.
 
     Raises:
         UsageError: the device needs more than the library allows; says what.
     """
     if isinstance(library, TwoPhaseLibrary):
         return map_two_phase(netlist, library)
-    return mapper.map_netlist(netlist, library, effort or mapper.Effort())
+    return mapper.map_netlist(netlist, library, effort or mapper.Effort(), earlier)
 
 
 def liberty_view(library: Library) -> str:

@@ -14,7 +14,7 @@ from random import Random
 from mdlcad.mapping.options import PHASES, Guard, Of, Option, OptionGraph
 from mdlcad.mapping.plan import Key, Role
 from mdlcad.mapping.registers import Term
-from mdlcad.mapping.selection import Selection, selection_cost, time_selection
+from mdlcad.mapping.selection import MASS_COST, Selection, selection_cost, time_selection
 from mdlcad.mapping.subject import TRUE
 
 # In units of cost, of which a mass has 16.
@@ -104,7 +104,7 @@ class Pass:
             if self._graph.subject.is_input(key.of[0]):
                 return _own_option(options)
         priced = [
-            (self._price(option, selection, favour), number)
+            (self._price(option, selection, favour) + self._graph.charge(key, number) / MASS_COST, number)
             for number, option in enumerate(options)
             if (option.guard is None or option.guard in guards) and not (key.role is Role.LOGIC and number == 0)
         ]

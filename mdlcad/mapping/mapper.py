@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from mdlcad.mapping.build import build_network, invert, with_ring
 from mdlcad.mapping.candidates import find_candidates
 from mdlcad.mapping.cover import best_cover
+from mdlcad.mapping.familiar import strangeness
 from mdlcad.mapping.greedy import plain_taste, search
 from mdlcad.mapping.library import Library
 from mdlcad.mapping.names import name_masses
@@ -38,8 +39,10 @@ class Effort:
     options: int = 40_000
 
 
-def map_netlist(netlist: Netlist, library: Library, effort: Effort = Effort()) -> Network:
-    """Map ``netlist`` to masses and springs of ``library``.
+def map_netlist(
+    netlist: Netlist, library: Library, effort: Effort = Effort(), earlier: Network | None = None
+) -> Network:
+    """Map ``netlist`` to masses and springs of ``library``, preferably to those that an ``earlier`` network had.
 
     The result is a function of the arguments alone.
 
@@ -47,7 +50,7 @@ def map_netlist(netlist: Netlist, library: Library, effort: Effort = Effort()) -
         UsageError: the device needs a fan-out that the library does not allow.
     """
     subject, nets = _make_subject(netlist)
-    plan = _make_plan(netlist, library, subject, nets, effort)
+    plan = _make_plan(netlist, library, subject, nets, effort, earlier)
     masses, tick = with_ring(plan)
     masses = relieve(masses, library.gates.load_limit, library.gates.echo_limit)
     names, upside_down = name_masses(replace(plan, masses=masses), subject, netlist, nets)
@@ -67,7 +70,14 @@ def _make_subject(netlist: Netlist) -> tuple[Subject, dict[str, int]]:
     return subject, nets
 
 
-def _make_plan(netlist: Netlist, library: Library, subject: Subject, nets: dict[str, int], effort: Effort) -> Plan:
+def _make_plan(
+    netlist: Netlist,
+    library: Library,
+    subject: Subject,
+    nets: dict[str, int],
+    effort: Effort,
+    earlier: Network | None,
+) -> Plan:
     wanted = []
     for register in netlist.registers:
         output, data = nets[register.bit], nets[register.data]
@@ -91,6 +101,8 @@ def _make_plan(netlist: Netlist, library: Library, subject: Subject, nets: dict[
         exact_choices(subject, candidates, item) if subject.exact else structural_choices(item) for item in wanted
     ]
     graph = OptionGraph(subject, candidates, choices, outputs, library.gates)
+    if earlier is not None:
+        graph.strange = strangeness(graph, earlier, library)
     start = search(graph, plain_taste(graph, [item.following for item in wanted]), effort.masses_made, _SEED)
     if not effort.deterministic_time or graph.size > effort.options:
         return make_plan(graph, start)

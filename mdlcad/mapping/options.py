@@ -62,6 +62,7 @@ class OptionGraph:
         required: masses that are needed whatever is decided.
         carriers: for every output the masses that can show it; it needs one of them.
         sensors: for every sensor its own mass in each phase; exactly one of them takes its option without sources.
+        strange: for every option of a mass what is charged because an earlier network did not have it so.
         load_limit, echo_limit: beyond which a mass needs a twin (see ``relieve``).
     """
 
@@ -79,6 +80,7 @@ class OptionGraph:
         self.registers = registers
         self.outputs = outputs
         self.options: dict[Key, list[Option]] = {}
+        self.strange: dict[Key, tuple[int, ...]] = {}
         self.required: list[Key] = []
         self.carriers: list[tuple[Carrier, ...]] = []
         self.sensors: list[tuple[Key, ...]] = []
@@ -106,6 +108,11 @@ class OptionGraph:
         if register is not None and phase == FOLLOW_PHASE:
             return Key(Role.FOLLOW, (register,), phase)
         return Key(Role.LOGIC, (node,), phase)
+
+    def charge(self, key: Key, number: int) -> int:
+        """What an option is charged for being strange."""
+        prices = self.strange.get(key)
+        return 0 if prices is None else prices[number]
 
     def _add(self, key: Key, sources: tuple[Key, ...], function: Threshold, guard: Guard | None = None) -> None:
         self._know(key)

@@ -124,7 +124,7 @@ CYCLE_COST = 2
 
 def selection_cost(graph: OptionGraph, selection: Selection) -> int:
     """What the search minimises: masses, the ring's and about as many twins as will be needed included, then couplings
-    and cycles."""
+    and cycles, and what is strange."""
     cost = CYCLE_COST * selection.cycles + MASS_COST * len(selection.chosen)
     targets: dict[Key, list[tuple[Key, int]]] = {}
     inputs: dict[Key, int] = {}
@@ -133,7 +133,7 @@ def selection_cost(graph: OptionGraph, selection: Selection) -> int:
         for source, weight in zip(option.sources, option.function.weights, strict=True):
             targets.setdefault(source, []).append((key, abs(weight)))
         inputs[key] = option.function.inputs
-        cost += COUPLING_COST * inputs[key]
+        cost += COUPLING_COST * inputs[key] + graph.charge(key, selection.chosen[key])
     if graph.registers:
         cost += MASS_COST * plan_ring(selection.cycles).masses(TICK0 in targets and TICK2 in targets)
     load = {key: sum(weight for _, weight in found) for key, found in targets.items()}

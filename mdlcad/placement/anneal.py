@@ -28,6 +28,7 @@ ORDER = 0.03
 # columns of State.row, the tallies of one (channel, row); A hangs on the left of the channel, B on the right
 VIA_A, VIA_B, BIAS_A, BIAS_B, STRAIGHT, POST_A, POST_B, SPOST_A, SPOST_B, COUNT_A, COUNT_B = range(11)
 SLOT, BIAS_SIDE = 0, 1
+HOME_SIDE = 2
 
 
 # The small functions take single rows, not the whole state: numba passes every array of a tuple by value.
@@ -325,6 +326,25 @@ def _passes(p: Problem, s: State, wire: float) -> float:
     return cost
 
 
+@numba.njit(cache=True, error_model="numpy", forceinline=True)
+def _away(s: State, a: int, b: int) -> float:
+    """What masses a and b (or -1) pay for not being in their home slots."""
+    away = 0
+    for k in range(2):
+        mass = a if k == 0 else b
+        if mass >= 0 and s.home[mass, SLOT] >= 0 and s.mass[mass, SLOT] != s.home[mass, SLOT]:
+            away += 1
+    return float(s.price[0]) * away
+
+
+@numba.njit(cache=True, error_model="numpy", forceinline=True)
+def _turned(s: State, side: int, home: int) -> float:
+    """What it costs to change over from ``side``, when it should be at ``home`` (-1: anywhere)."""
+    if home < 0:
+        return 0.0
+    return float(s.price[1]) if side == home else -float(s.price[1])
+
+
 @numba.njit(cache=True, error_model="numpy")
 def _swap(s: State, a: int, slot: int) -> None:
     old = s.mass[a, SLOT]
@@ -402,15 +422,18 @@ def anneal(
             kind = 0 if couplings > 0 and _draw(random) < 0.5 else 1
         mass, other, n, coupling, slot, reach = int(_draw(random) * masses), -1, 0, 0, 0, 0.0
         old = s.mass[mass, SLOT]
+        change = 0.0
         if kind == 0:
             coupling = int(_draw(random) * couplings)
             nets[0] = p.coupling[coupling, 0]
             n, mass = 1, -1
             if p.slot[s.mass[nets[0], SLOT], 0] != p.slot[s.mass[p.coupling[coupling, 1], SLOT], 0]:
                 continue
+            change = _turned(s, s.side[coupling], s.home[coupling, HOME_SIDE])
         elif kind == 1:
             if not p.mass[mass, 3]:
                 continue
+            change = _turned(s, s.mass[mass, BIAS_SIDE], s.home[mass, BIAS_SIDE])
         else:
             slot = _propose(p, s, mass, random)
             if slot == old:
@@ -419,13 +442,12 @@ def anneal(
             n = _gather(p, mass, nets, 0)
             if other >= 0:
                 n = _gather(p, other, nets, n)
-            reach = -_span(p, s, nets, n) - _passes(p, s, WIRE)
+            reach = -_span(p, s, nets, n) - _passes(p, s, WIRE) - _away(s, mass, other)
             _swap(s, mass, slot)
-            reach += _span(p, s, nets, n) + _passes(p, s, WIRE)
+            reach += _span(p, s, nets, n) + _passes(p, s, WIRE) + _away(s, mass, other)
             _swap(s, mass, old)
             if reach > 0 and _draw(random) >= math.exp(-reach / heat):
                 continue
-        change = 0.0
         for attempt in range(2):
             change += _tally(p, s, nets, n, mass, other, -1)
             if kind == 0:

@@ -84,7 +84,7 @@ def lattices(
             best: tuple[tuple[float, ...], Lattice] | None = None
             for y_first in _row_offsets(ports, y_low, y_high, rows, rules):
                 row_y = tuple(round(y_first + r * rules.row_pitch, 6) for r in range(rows))
-                lattice = _lattice(boundary, scale, inner, column_x, row_y, ports, rules)
+                lattice = make_lattice(boundary, scale, inner, column_x, row_y, ports, rules)
                 aligned = sum(1 for tab in lattice.tabs if not tab.vertical and tab.row is not None)
                 key = (-min(len(lattice.slots), need + 4), -aligned, order, -columns)
                 if len(lattice.slots) >= need and (best is None or key < best[0]):
@@ -110,7 +110,7 @@ def _row_offsets(
     return tuple(dict.fromkeys(round(offset, 6) for offset in offsets))
 
 
-def _lattice(
+def make_lattice(
     boundary: tuple[tuple[float, float], ...],
     scale: float,
     inner: Polygon,
@@ -119,6 +119,7 @@ def _lattice(
     ports: tuple[PlacedPort, ...],
     rules: LayoutRules,
 ) -> Lattice:
+    """The lattice of those columns and rows: its slots are what lies inside and is not taken by a tab."""
     tabs = terminals(ports, inner, column_x, row_y, rules)
     keep = rules.hub_half + rules.bar_width / 2 + rules.gap
     # a vertical tab over a hub column takes the hub's place in its rows

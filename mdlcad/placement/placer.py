@@ -13,8 +13,8 @@ from mdlcad.placement.anneal import anneal
 from mdlcad.placement.columns import choose_columns
 from mdlcad.placement.lattice import Lattice
 from mdlcad.placement.placement import PlacedMass, Placement
-from mdlcad.placement.problem import Problem, build, realisable
-from mdlcad.placement.state import start
+from mdlcad.placement.problem import Ints, Problem, build, realisable
+from mdlcad.placement.state import State, start
 
 MOVES_PER_MASS = 8000
 SIDE_MOVES_PER_MASS = 2000
@@ -36,11 +36,16 @@ def place(
     problem = build(network, lattice, rules)
     state, source = start(problem, np.array(_start(problem, lattice, len(network.masses), seed), np.int32), seed)
     cost = anneal(problem, state, source, moves_per_mass * len(network.masses), HOT, COLD, False)
+    return PlaceResult(placement_of(network, lattice, state.mass[:, 0], seed), float(cost))
+
+
+def placement_of(network: Network, lattice: Lattice, slot_of: Ints, seed: int) -> Placement:
+    """The artefact for ``slot_of``, (M,) the slot of every mass."""
     masses = []
-    for index, mass in enumerate(network.masses):
-        column, row = lattice.slots[int(state.mass[index, 0])]
+    for mass, slot in zip(network.masses, slot_of.tolist(), strict=True):
+        column, row = lattice.slots[slot]
         masses.append(PlacedMass(mass.name, column, row, lattice.column_x[column], lattice.row_y[row]))
-    placement = Placement(
+    return Placement(
         boundary=lattice.boundary,
         mm_per_grid=lattice.mm_per_grid,
         column_x=lattice.column_x,
@@ -50,7 +55,6 @@ def place(
         ports=lattice.ports,
         seed=seed,
     )
-    return PlaceResult(placement, float(cost))
 
 
 def _start(problem: Problem, lattice: Lattice, masses: int, seed: int) -> list[int]:
@@ -81,13 +85,18 @@ def choose_sides(network: Network, placement: Placement, lattice: Lattice, rules
     problem = build(network, lattice, rules)
     index = {slot: i for i, slot in enumerate(lattice.slots)}
     where = {placed.mass: index[placed.column, placed.row] for placed in placement.masses}
-    columns = {placed.mass: placed.column for placed in placement.masses}
     state, source = start(problem, np.array([where[mass.name] for mass in network.masses], np.int32), seed)
     cost = anneal(problem, state, source, SIDE_MOVES_PER_MASS * len(network.masses), HOT, COLD, True)
+    return sides_of(network, placement, rules, state, float(cost))
+
+
+def sides_of(network: Network, placement: Placement, rules: LayoutRules, state: State, cost: float) -> Sides:
+    """The sides that ``state`` has settled on."""
+    columns = {placed.mass: placed.column for placed in placement.masses}
     couplings = {}
     for i, j in enumerate(realisable(network, rules)):
         coupling = network.couplings[j]
         across = columns[coupling.target] - columns[coupling.source]
         couplings[coupling.name] = int(state.side[i]) if across == 0 else int(across > 0)
     biases = {mass.name: int(state.mass[i, 1]) for i, mass in enumerate(network.masses) if mass.name in rules.biases}
-    return Sides(couplings, biases, float(cost))
+    return Sides(couplings, biases, cost)

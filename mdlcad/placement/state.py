@@ -24,6 +24,8 @@ class State(NamedTuple):
         trunks, trunk_count: the net-channels with a trunk, by channel.
         window, rows: by net-channel, lowest and highest x (mm) and row of its trunk.
         dirty: channels whose trunks have changed. at, due, waits: room for packing tracks.
+        home: (max(M, J), 3) by mass the slot and bias side, by coupling the channel side that it should keep, or -1.
+        price: what it costs a mass to leave its home slot, and a leaf or coupling its home side.
     """
 
     mass: Ints
@@ -40,6 +42,8 @@ class State(NamedTuple):
     at: Floats
     due: Floats
     waits: Ints
+    home: Ints
+    price: Floats
 
 
 def start(problem: Problem, slot_of: Ints, seed: int) -> tuple[State, npt.NDArray[np.uint64]]:
@@ -68,6 +72,8 @@ def start(problem: Problem, slot_of: Ints, seed: int) -> tuple[State, npt.NDArra
         at=np.zeros(masses + 1),
         due=np.zeros(masses + 1),
         waits=np.zeros(masses + 1, np.int32),
+        home=np.full((max(masses, len(problem.coupling)), 3), -1, np.int32),
+        price=np.zeros(2),
     )
     # splitmix64 spreads neighbouring seeds apart
     z: Any = (seed * 0x9E3779B97F4A7C15 + 0x9E3779B97F4A7C15) & 0xFFFFFFFFFFFFFFFF

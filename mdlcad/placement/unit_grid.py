@@ -16,23 +16,11 @@ from shapely import Polygon
 
 from mdlcad.errors import UsageError
 from mdlcad.network.model import Network
+from mdlcad.placement.names import PlacerName
+from mdlcad.placement.placers import Placer
 from mdlcad.placement.ports import PortPlace
-from mdlcad.placement.sites import (
-    PaperOptions,
-    Sited,
-    SiteProblem,
-    StraightOptions,
-    place_like_the_paper,
-    place_straight,
-)
+from mdlcad.placement.sites import Sited, SiteProblem
 from mdlcad.placement.sites.problem import lines_between
-
-
-class Placer(StrEnum):
-    """ANNEAL: ours. PAPER: force-directed layout, assignment, greedy removal of crossings."""
-
-    ANNEAL = "anneal"
-    PAPER = "paper"
 
 
 class Seating(StrEnum):
@@ -75,7 +63,7 @@ class GridPlacement:
         length: of all couplings as straight lines, in footprints.
     """
 
-    placer: Placer
+    placer: PlacerName
     seed: int
     boundary: tuple[tuple[float, float], ...]
     footprint: float
@@ -107,7 +95,6 @@ def place_on_grid(
     placer: Placer,
     seating: Seating,
     seed: int,
-    options: PaperOptions | StraightOptions | None = None,
 ) -> GridPlacement:
     """Place ``network`` inside ``boundary`` (grid units) with its ports at their places.
 
@@ -115,11 +102,7 @@ def place_on_grid(
         UsageError: a port of the network has no place.
     """
     problem = grid_problem(network, boundary, ports, seating)
-    if placer is Placer.PAPER:
-        found = place_like_the_paper(problem.sites, seed, options if isinstance(options, PaperOptions) else None)
-    else:
-        found = place_straight(problem.sites, seed, options if isinstance(options, StraightOptions) else None)
-    return _placement(network, boundary, problem, found, placer, seed)
+    return grid_placement(network, boundary, problem, placer.on_sites(problem.sites, seed), placer.name, seed)
 
 
 def grid_problem(
@@ -171,14 +154,15 @@ def _sites(outline: Polygon, need: int) -> tuple[float, np.ndarray]:
         divisor += 1
 
 
-def _placement(
+def grid_placement(
     network: Network,
     boundary: tuple[tuple[int, int], ...],
     problem: GridProblem,
     found: Sited,
-    placer: Placer,
+    placer: PlacerName,
     seed: int,
 ) -> GridPlacement:
+    """The artefact of a solution."""
     points = problem.sites.points(found.site_of) * problem.scale
     where = {name: points[index] for index, name in enumerate(problem.order) if name}
     moving = set(problem.order[: problem.sites.nodes])

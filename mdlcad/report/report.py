@@ -86,6 +86,41 @@ class Stopped:
 
 
 @dataclass(frozen=True, slots=True)
+class Seeds:
+    """The seeds that placement tried side by side, the one that was kept, and those that led to no layout."""
+
+    tried: tuple[int, ...]
+    won: int
+    failed: tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Likeness:
+    """The earlier build that this one was to be like, and what became of its masses.
+
+    Attributes:
+        build: SHA-256 of what was taken from it (of lines "SHA-256  NAME" of its netlist, network, ...).
+        kept: masses that are in both; moved: those of them that are in another slot now.
+        new, gone: masses that only this one, or only the earlier one, has.
+    """
+
+    build: str
+    kept: int
+    moved: int
+    new: int
+    gone: int
+
+
+@dataclass(frozen=True, slots=True)
+class Search:
+    """How a placement was found: by which placer, with which seeds (None: one), like which build (None: like none)."""
+
+    placer: str
+    seeds: Seeds | None
+    like: Likeness | None
+
+
+@dataclass(frozen=True, slots=True)
 class Report:
     """The machine's copy of the build's result. None: the build ended before that was known.
 
@@ -123,3 +158,6 @@ class Report:
     failures: tuple[str, ...] = ()
     bom: Bom | None = None
     drive: DriveLoads | None = None
+    placer: str | None = None
+    seeds: Seeds | None = None
+    like: Likeness | None = None

@@ -37,7 +37,7 @@ class ChannelRoute:
     plates: tuple[int, ...]
 
 
-class _Model:
+class ChannelModel:
     """Variables and constraints of one channel."""
 
     def __init__(self, channel: Channel, rules: LayoutRules) -> None:
@@ -183,11 +183,11 @@ def solve(channel: Channel, rules: LayoutRules, seed: int) -> ChannelRoute | Non
         return None
     if not channel.items:
         return ChannelRoute((), ())
-    model = _Model(channel, rules)
-    solver = _solver(seed, FIRST_LIMIT)
+    model = ChannelModel(channel, rules)
+    solver = solver_with(seed, FIRST_LIMIT)
     if solver.solve(model.model) not in (cp_model.OPTIMAL, cp_model.FEASIBLE):
         return None
-    best = _read(model, solver)
+    best = read_route(model, solver)
     if channel.items:
         model.model.minimize(model.length())
         for variable, value in zip(model.x, best[0], strict=True):
@@ -195,13 +195,19 @@ def solve(channel: Channel, rules: LayoutRules, seed: int) -> ChannelRoute | Non
         for row, plate in zip(model.plate, best[1], strict=True):
             for k, literal in enumerate(row):
                 model.model.add_hint(literal, k == plate)
-        solver = _solver(seed, BEST_LIMIT)
+        solver = solver_with(seed, BEST_LIMIT)
         if solver.solve(model.model) in (cp_model.OPTIMAL, cp_model.FEASIBLE):
-            best = _read(model, solver)
-    return ChannelRoute(tuple(round(x * RESOLUTION, 6) for x in best[0]), tuple(best[1]))
+            best = read_route(model, solver)
+    return in_mm(best)
 
 
-def _solver(seed: int, limit: float) -> cp_model.CpSolver:
+def in_mm(solved: tuple[list[int], list[int]]) -> ChannelRoute:
+    """The route that ``read_route`` found."""
+    return ChannelRoute(tuple(round(x * RESOLUTION, 6) for x in solved[0]), tuple(solved[1]))
+
+
+def solver_with(seed: int, limit: float) -> cp_model.CpSolver:
+    """A solver of one worker with that deterministic time."""
     solver = cp_model.CpSolver()
     solver.parameters.num_workers = 1
     solver.parameters.random_seed = seed
@@ -209,7 +215,8 @@ def _solver(seed: int, limit: float) -> cp_model.CpSolver:
     return solver
 
 
-def _read(model: _Model, solver: cp_model.CpSolver) -> tuple[list[int], list[int]]:
+def read_route(model: ChannelModel, solver: cp_model.CpSolver) -> tuple[list[int], list[int]]:
+    """Track (counts) of every trunk and plate of every item, as solved."""
     tracks = [int(solver.value(x)) for x in model.x]
     plates = [next(k for k, literal in enumerate(row) if solver.boolean_value(literal)) for row in model.plate]
     return tracks, plates

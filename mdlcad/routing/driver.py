@@ -12,9 +12,10 @@ from mdlcad.errors import Picture, SignoffError
 from mdlcad.mechanics.rules import LayoutRules
 from mdlcad.network.model import Network
 from mdlcad.placement.anneal import HARD
-from mdlcad.placement.lattice import lattices, place_ports
+from mdlcad.placement.lattice import Lattice, lattices, place_ports
 from mdlcad.placement.placement import Placement
-from mdlcad.placement.placer import PlaceResult, place
+from mdlcad.placement.placer import MOVES_PER_MASS, PlaceResult
+from mdlcad.placement.placers import ANNEAL, Placer
 from mdlcad.placement.ports import PortPlace
 from mdlcad.placement.room import Lack, lack_of_room
 from mdlcad.routing.jam import Jam, JamError, draw_jam
@@ -83,6 +84,7 @@ def place_and_route(
     progress: Callable[[str], None] | None = None,
     judge: Judge = no_objection,
     size: Size = SMALLEST,
+    placer: Placer = ANNEAL,
 ) -> tuple[Placement, Layout]:
     """Place and route at the smallest scale (mm per grid unit) that works. Same arguments, same result.
 
@@ -92,12 +94,13 @@ def place_and_route(
         boundary: vertices on the grid, clockwise. ports: places in grid units.
         progress: called with one line for every scale tried.
         judge: what a layout is held to besides its clearances.
+        placer: decides who sits where.
 
     Raises:
         SignoffError: no scale that ``size`` allows, up to ``STEP ** MOST_STEPS`` times the least one, works; it says
             what was in the way, and has a picture of that.
     """
-    search = _Search(network, boundary, ports, rules, seed, progress or (lambda line: None), judge)
+    search = _Search(network, boundary, ports, rules, seed, progress or (lambda line: None), judge, placer)
     if size.pitch is not None:
         found = search.attempt(size.pitch, PATIENT)
         return found if found is not None else search.give_up(f"at {size.pitch:g} mm per grid unit")
@@ -151,8 +154,10 @@ class _Search:
         seed: int,
         progress: Callable[[str], None],
         judge: Judge,
+        placer: Placer,
     ) -> None:
         self.network, self.boundary, self.ports, self.judge = network, boundary, ports, judge
+        self.placer = placer
         self.rules, self.seed, self.progress = rules, seed, progress
         self.closest: PlaceResult | None = None
         self.reason = ""
@@ -170,13 +175,13 @@ class _Search:
         if not choices:
             self.reason = f"no lattice of {need} slots fits the boundary: a larger size would help"
             return None
-        short = [place(self.network, lattice, self.rules, self.seed, SCREEN) for lattice in choices]
+        short = [self._place(lattice, 0, SCREEN) for lattice in choices]
         screened = sorted((result.cost, index) for index, result in enumerate(short))
         self._remember(short[screened[0][1]])
         best = screened[0][0]
         for cost, index in screened[: effort.lattices]:
             for offset in range(effort.seeds if cost <= HOPELESS else 0):
-                result = place(self.network, choices[index], self.rules, self.seed + offset)
+                result = self._place(choices[index], offset, MOVES_PER_MASS)
                 best = min(best, result.cost)
                 self._remember(result)
                 if result.cost > FAR:
@@ -198,6 +203,9 @@ class _Search:
         else:
             self.progress(f"{scale:.3f} mm per grid unit: {self.reason}")
         return None
+
+    def _place(self, lattice: Lattice, offset: int, moves_per_mass: int) -> PlaceResult:
+        return self.placer.on_lattice(self.network, lattice, self.rules, self.seed + offset, moves_per_mass)
 
     def _remember(self, result: PlaceResult) -> None:
         if self.closest is None or result.cost < self.closest.cost:

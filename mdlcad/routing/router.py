@@ -15,6 +15,7 @@ from mdlcad.routing.channel import ChannelRoute, solve
 from mdlcad.routing.gather import channels
 from mdlcad.routing.jam import Jam, JamError
 from mdlcad.routing.judge import Judge, Objection, lowered, no_objection
+from mdlcad.routing.keep import Keeper
 from mdlcad.routing.layout import Layout
 from mdlcad.routing.pieces import Channel
 
@@ -40,10 +41,18 @@ def lattice_of(placement: Placement, rules: LayoutRules) -> Lattice:
     )
 
 
-def route(network: Network, placement: Placement, rules: LayoutRules, seed: int, judge: Judge = no_objection) -> Layout:
+def route(
+    network: Network,
+    placement: Placement,
+    rules: LayoutRules,
+    seed: int,
+    judge: Judge = no_objection,
+    keeper: Keeper | None = None,
+) -> Layout:
     """Tracks and plates for every carrier, coupler, bias leaf and tab.
 
-    Couplings that mechanics has no linkage for end in ``Layout.unrealised``.
+    Couplings that mechanics has no linkage for end in ``Layout.unrealised``. With a ``keeper`` all is routed as it was
+    in the earlier layout, where that is still possible.
 
     Raises:
         JamError: a channel has no legal routing (or none was found), and then it names the channel and its fullest
@@ -51,14 +60,16 @@ def route(network: Network, placement: Placement, rules: LayoutRules, seed: int,
     """
     lattice = lattice_of(placement, rules)
     jam = JamError(f"{network.design} has no channels", Jam(placement))
-    for attempt in range(SIDE_TRIES):
-        sides = choose_sides(network, placement, lattice, rules, seed + attempt)
-        work = channels(network, placement, lattice, sides, rules, attempt)
+    turns = range(SIDE_TRIES) if keeper is None else keeper.turns(placement, lattice, rules, SIDE_TRIES)
+    choose, solve_channel = (choose_sides, solve) if keeper is None else (keeper.sides, keeper.solve)
+    for attempt, turn in enumerate(turns):
+        sides = choose(network, placement, lattice, rules, seed + attempt)
+        work = channels(network, placement, lattice, sides, rules, turn)
         routes: dict[int, ChannelRoute] = {}
         again = set(range(len(work)))
         for _ in range(ROUNDS):
             for index in sorted(again):
-                found = solve(work[index], rules, seed)
+                found = solve_channel(work[index], rules, seed)
                 if found is None:
                     jam = JamError(_complaint(work[index], placement), Jam(placement, work[index]))
                     break

@@ -9,12 +9,12 @@ from shapely import Polygon, affinity
 
 from mdlcad.compare import sections
 from mdlcad.compare.equivalence import compare_behaviour
-from mdlcad.compare.matching import renamed_masses
 from mdlcad.compare.program import tokens
 from mdlcad.compare.sections import check_agreement, difference
 from mdlcad.errors import UsageError
 from mdlcad.language import Device, read_device
 from mdlcad.mapping import load_library, map_netlist
+from mdlcad.network.matching import renamed_masses
 from mdlcad.network.model import Network
 from mdlcad.synthesis import synthesise
 

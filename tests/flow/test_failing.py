@@ -7,7 +7,7 @@ import pytest
 
 from mdlcad.cli import FAILS, HOLDS, UNUSABLE, main
 from mdlcad.errors import SignoffError
-from mdlcad.flow import steps
+from mdlcad.flow import placing
 
 VOTER = Path(__file__).resolve().parents[2] / "examples" / "voter.mdl"
 
@@ -54,7 +54,7 @@ def test_a_layout_that_is_not_found_leaves_what_was_made(sized, tmp_path, monkey
     def jammed(*arguments):
         raise SignoffError("channel 1: no legal tracks for 7 nets")
 
-    monkeypatch.setattr(steps, "place_and_route", jammed)
+    monkeypatch.setattr(placing, "place_and_route", jammed)
     folder = tmp_path / "jammed"
     assert main(["build", str(sized), "--from", "placement", "-o", str(folder)]) == FAILS
     found = report(folder)

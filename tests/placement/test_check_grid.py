@@ -7,8 +7,9 @@ import pytest
 
 from mdlcad.network.model import Coupling, Dynamics, Mass, MassKind, Network, PortBit
 from mdlcad.placement.check_grid import check_grid
+from mdlcad.placement.placers import ANNEAL
 from mdlcad.placement.ports import PortPlace
-from mdlcad.placement.unit_grid import Placer, Seating, place_on_grid
+from mdlcad.placement.unit_grid import Seating, place_on_grid
 
 BOUNDARY = ((0, 0), (0, 7), (9, 7), (9, 0))
 PORTS = (PortPlace("s[0]", "left", 0.0, 3.5, (-1.0, 0.0)), PortPlace("t[0]", "right", 9.0, 1.4, (1.0, 0.0)))
@@ -29,7 +30,7 @@ NETWORK = Network(
 
 @pytest.fixture(scope="module")
 def placed():
-    return place_on_grid(NETWORK, BOUNDARY, PORTS, Placer.ANNEAL, Seating.ON_BOUNDARY, 0)
+    return place_on_grid(NETWORK, BOUNDARY, PORTS, ANNEAL, Seating.ON_BOUNDARY, 0)
 
 
 def moved(placement, number, **change):

@@ -1,0 +1,143 @@
+"""Place a network like an earlier one: what is still there stays in its slot, unless that cannot be."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy.optimize import linear_sum_assignment
+
+from mdlcad.mechanics.rules import LayoutRules
+from mdlcad.network.model import Network
+from mdlcad.placement.anneal import HARD, anneal
+from mdlcad.placement.lattice import Lattice
+from mdlcad.placement.placement import Placement
+from mdlcad.placement.placer import (
+    MOVES_PER_MASS,
+    SIDE_MOVES_PER_MASS,
+    PlaceResult,
+    Sides,
+    placement_of,
+    sides_of,
+)
+from mdlcad.placement.problem import Ints, Problem, build, realisable
+from mdlcad.placement.state import State, start
+
+PRICES = (1e6, HARD, HARD / 2)
+"""What moving a mass costs: the first at which all can be routed is taken. A broken rule costs ``HARD``, so from the
+second on a mass moves to mend one; for less, masses would move for shorter wires."""
+SIDE_PRICE = HARD / 4
+"""What it costs to serve a coupling, or to hang a bias leaf, on the other side."""
+WARM, COOL = 4.0, 0.3
+"""First and last temperature: warm enough to pass a broken rule on the way, too cool to forget the start."""
+COLUMN_APART, ROW_APART = 4.0, 1.0
+"""How far a new mass counts as from its neighbours, for a column and for a row between them."""
+
+
+@dataclass(frozen=True, slots=True)
+class Kept:
+    """Where things were, under the names that they have now.
+
+    Attributes:
+        slots: (column, row) by mass.
+        couplings: channel side (0 left, 1 right) by name, of couplings within a column.
+        biases: side of the bias leaf (0 left, 1 right) by mass.
+    """
+
+    slots: Mapping[str, tuple[int, int]]
+    couplings: Mapping[str, int]
+    biases: Mapping[str, int]
+
+
+def place_kept(
+    network: Network, lattice: Lattice, rules: LayoutRules, kept: Kept, price: float, seed: int
+) -> PlaceResult:
+    """Place ``network`` with every kept mass in its slot, or elsewhere for ``price``. Same arguments, same result."""
+    problem = build(network, lattice, rules)
+    home = _homes(network, lattice, rules, kept)
+    slot_of = _seated(problem, home[: len(network.masses), 0])
+    state, source = _held(problem, slot_of, home, price, seed)
+    if price == PRICES[0] and np.array_equal(slot_of, home[: len(network.masses), 0]):
+        moves = 0  # nobody is new: there is nothing to look for
+    else:
+        moves = MOVES_PER_MASS * len(network.masses)
+    cost = anneal(problem, state, source, moves, WARM, COOL, False)
+    return PlaceResult(placement_of(network, lattice, state.mass[:, 0], seed), float(cost))
+
+
+def keep_sides(
+    network: Network, placement: Placement, lattice: Lattice, rules: LayoutRules, kept: Kept, seed: int
+) -> Sides:
+    """Which channel serves every coupling and bias leaf, as before where that can be, of masses that stay in place."""
+    problem = build(network, lattice, rules)
+    index = {slot: i for i, slot in enumerate(lattice.slots)}
+    where = {placed.mass: index[placed.column, placed.row] for placed in placement.masses}
+    slot_of = np.array([where[mass.name] for mass in network.masses], np.int32)
+    home = _homes(network, lattice, rules, kept)
+    state, source = _held(problem, slot_of, home, 0.0, seed)
+    cost = anneal(problem, state, source, 0, WARM, COOL, True)
+    if cost > 0 or not _all_known(problem, state, home):
+        state, source = _held(problem, slot_of, home, 0.0, seed)
+        cost = anneal(problem, state, source, SIDE_MOVES_PER_MASS * len(network.masses), WARM, COOL, True)
+    return sides_of(network, placement, rules, state, float(cost))
+
+
+def _homes(network: Network, lattice: Lattice, rules: LayoutRules, kept: Kept) -> Ints:
+    """``State.home`` for ``network`` on ``lattice``."""
+    index = {slot: i for i, slot in enumerate(lattice.slots)}
+    couplings = realisable(network, rules)
+    home = np.full((max(len(network.masses), len(couplings)), 3), -1, np.int32)
+    for row, mass in enumerate(network.masses):
+        if mass.name in kept.slots:
+            home[row, 0] = index.get(kept.slots[mass.name], -1)
+        home[row, 1] = kept.biases.get(mass.name, -1)
+    for row, number in enumerate(couplings):
+        home[row, 2] = kept.couplings.get(network.couplings[number].name, -1)
+    return home
+
+
+def _held(problem: Problem, slot_of: Ints, home: Ints, price: float, seed: int) -> tuple[State, npt.NDArray[np.uint64]]:
+    """A state that starts from ``slot_of`` with all sides at home."""
+    state, source = start(problem, slot_of, seed)
+    state.mass[:, 1] = np.maximum(home[: len(slot_of), 1], 0)
+    state.side[:] = np.maximum(home[: len(problem.coupling), 2], 0)
+    state.home[:] = home
+    state.price[:] = price, SIDE_PRICE
+    return state, source
+
+
+def _all_known(problem: Problem, state: State, home: Ints) -> bool:
+    """Whether every side that there is to choose has a home."""
+    column = problem.slot[state.mass[:, 0], 0]
+    within = column[problem.coupling[:, 0]] == column[problem.coupling[:, 1]]
+    sides = home[: len(problem.coupling), 2]
+    biases = home[: len(state.mass), 1]
+    biased = problem.mass[: len(state.mass), 3] == 1
+    return bool(np.all(sides[within] >= 0) and np.all(biases[biased] >= 0))
+
+
+def _seated(problem: Problem, home: Ints) -> Ints:
+    """(M,) a slot for every mass: its home, or of the free ones one near those that it is coupled to.
+
+    The new masses are seated in rounds, those with a seated neighbour first, each round by the least sum of distances.
+    """
+    slot_of = home.copy()
+    links = problem.coupling[:, :2]
+    while np.any(slot_of < 0):
+        lost = [int(mass) for mass in np.flatnonzero(slot_of < 0)]
+        friends = {mass: [int(b if a == mass else a) for a, b in links.tolist() if mass in (a, b)] for mass in lost}
+        seated = {mass: [f for f in friends[mass] if slot_of[f] >= 0] for mass in lost}
+        turn = [mass for mass in lost if seated[mass]] or lost
+        taken = set(slot_of.tolist())
+        free = [slot for slot in range(len(problem.slot)) if slot not in taken]
+        far = np.zeros((len(turn), len(free)))
+        for row, mass in enumerate(turn):
+            for friend in seated[mass]:
+                apart = np.abs(problem.slot[free] - problem.slot[slot_of[friend]])
+                far[row] += COLUMN_APART * np.maximum(0, apart[:, 0] - 1) + ROW_APART * apart[:, 1]
+        rows, columns = linear_sum_assignment(far)
+        for row, column in zip(rows.tolist(), columns.tolist(), strict=True):
+            slot_of[turn[row]] = free[column]
+    return slot_of
