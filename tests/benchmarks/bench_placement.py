@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
-from mdlcad.flow.steps import port_places
+from mdlcad.flow.outline import port_places
 from mdlcad.language import read_device
 from mdlcad.mapping import load_library, map_netlist
 from mdlcad.placement.sites import place_like_the_paper, place_straight
