@@ -12,7 +12,8 @@ from shapely.geometry.base import BaseGeometry
 
 from mdlcad.compare.sections import GRID_MM
 from mdlcad.mechanics.rules import LayoutRules
-from mdlcad.parts.body import Body, BodyKind
+from mdlcad.parts.body import Body
+from mdlcad.parts.plates import STOCK
 from mdlcad.placement.placement import Placement
 from mdlcad.routing.layout import Layout
 
@@ -64,7 +65,7 @@ def drawn_bodies(bodies: Sequence[Body]) -> list[Drawn]:
     return [
         Drawn(
             body.name,
-            body.kind.value + "s" if body.kind in (BodyKind.PIN, BodyKind.POST) else body.plate,
+            body.kind.value + "s" if body.kind in STOCK else body.plate,
             body.z,
             body.colour,
             body.assembled if body.assembled is not None else body.section,

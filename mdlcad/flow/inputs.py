@@ -43,7 +43,7 @@ def digests_of(fields: tuple[str, ...], state: State, folder: Path) -> dict[str,
 def _bytes(field: str, state: State, folder: Path) -> bytes:
     if field == "bodies":
         return to_json(records_of(state.bodies or ()))
-    if field in ("files", "pictures"):
+    if field in ("guide", "files", "pictures"):
         names: tuple[str, ...] = getattr(state, field)
         return "".join(f"{name} {checksum((folder / name).read_bytes())}\n" for name in names).encode()
     return to_json(getattr(state, field))

@@ -75,7 +75,7 @@ class State:
     Attributes:
         grid: what the placement is with a library that has no parts yet.
         search: how the placement was found.
-        files, pictures: paths in the folder, of the files for other programs and of the views.
+        guide, files, pictures: paths in the folder, of the assembly guide, the files for other programs and the views.
     """
 
     device: Device | None = None
@@ -92,6 +92,7 @@ class State:
     carriers: tuple[CarrierStiffness, ...] = ()
     rules: DesignRules | None = None
     drive: DriveLoads | None = None
+    guide: tuple[str, ...] = ()
     files: tuple[str, ...] = ()
     pictures: tuple[str, ...] = ()
     lvs: LvsResult | None = None

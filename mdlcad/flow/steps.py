@@ -136,6 +136,21 @@ def _drive(job: Job, state: State, progress: Progress) -> State:
     return replace(state, drive=loads)
 
 
+def _guide(job: Job, state: State, progress: Progress) -> State:
+    from mdlcad.report.guide import GUIDE, guide  # the templates are not needed by early stages
+
+    text = guide(
+        need(state.network),
+        need(state.sizing),
+        need(state.placement),
+        job.process,
+        need(state.bodies),
+        need(state.drive),
+    )
+    write_atomic(job.folder / GUIDE, text.encode())
+    return replace(state, guide=(GUIDE,))
+
+
 def _export(job: Job, state: State, progress: Progress) -> State:
     from mdlcad.export.files import write_files  # the CAD kernel takes seconds to load; early stages need not wait
 
@@ -330,6 +345,16 @@ STEPS: tuple[Step, ...] = (
         lambda s: to_json(s.drive),
         from_artefact("drive", DriveLoads),
         ("process", "seed"),
+    ),
+    Step(
+        "guide",
+        ("network", "sizing", "placement", "bodies", "drive"),
+        ("guide",),
+        _guide,
+        lambda s: "how to make it, put it together and start it",
+        None,
+        lambda job, state, files: replace(state, guide=files),
+        ("process",),
     ),
     Step(
         "files",

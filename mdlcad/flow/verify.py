@@ -18,6 +18,7 @@ from mdlcad.language import Device
 from mdlcad.mapping import CELLS_FILE, map_netlist, recorded_library
 from mdlcad.mapping.two_phase import TwoPhaseLibrary
 from mdlcad.mechanics import Process, Sizing
+from mdlcad.mechanics.drive import DriveLoads
 from mdlcad.network.model import Network
 from mdlcad.parts import build_parts
 from mdlcad.parts.plates import plates_of
@@ -28,6 +29,7 @@ from mdlcad.placement.placement import Placement
 from mdlcad.placement.unit_grid import GridPlacement
 from mdlcad.proof.prove import prove
 from mdlcad.proof.reference import build_reference
+from mdlcad.report.guide import GUIDE, guide
 from mdlcad.report.report import Report
 from mdlcad.routing.layout import Layout
 from mdlcad.signoff.extraction import extract
@@ -81,8 +83,8 @@ def _verify(folder: Path, report: Report, workers: int, say: Callable[[str], Non
     proof = prove(network, reference, seed=report.seed, workers=workers)
     step("behaviour", [] if proof.holds else [str(item) for item in proof.first_mismatches] or ["nothing was checked"])
     if placed_only:
-        again = map_netlist(load(folder, "netlist.json", Netlist), recorded_library(folder))
-        step("mapping", [] if again == network else [f"network.json: not what {CELLS_FILE} makes of netlist.json"])
+        mapped = map_netlist(load(folder, "netlist.json", Netlist), recorded_library(folder))
+        step("mapping", [] if mapped == network else [f"network.json: not what {CELLS_FILE} makes of netlist.json"])
         grid = load(folder, "placement.json", GridPlacement)
         boundary = tuple(line.start for line in device.boundary)
         step("placement", check_grid(network, grid, boundary, port_places(device)))
@@ -96,6 +98,9 @@ def _verify(folder: Path, report: Report, workers: int, say: Callable[[str], Non
     step("parts", [] if stored == Parts(records_of(bodies), carriers) else ["parts.json: not what the layout makes"])
     rules = check_geometry(network, sizing, placement, layout, bodies, carriers, process)
     step("drc", [f"{item.rule}: {', '.join(item.bodies)}: {item.message}" for item in rules.errors])
+    drive = load(folder, "drive.json", DriveLoads)
+    again = guide(network, sizing, placement, process, bodies, drive).encode()
+    step("guide", [] if (folder / GUIDE).read_bytes() == again else [f"{GUIDE}: is not the guide that the files make"])
     found = read_step(folder / f"{device.name}.step")
     step("step", check_bodies(bodies, found))
     stl = []

@@ -137,9 +137,17 @@ class LinkTemplate:
 
 @dataclass(frozen=True, slots=True)
 class FrameTemplate:
-    """The rim along the boundary."""
+    """The rim along the boundary.
+
+    Attributes:
+        screw, screw_hole: diameters of the screws that hold the stack together and of their clearance holes.
+        screw_pitch: how far apart along the rim they may be.
+    """
 
     width: float
+    screw: float
+    screw_hole: float
+    screw_pitch: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -268,6 +276,10 @@ def _faults(process: Process) -> list[tuple[str, str]]:
         faults.append(("unit.series_leaves", "must be 2 or more, or the trusses can turn"))
     if process.unit.rib_width < process.pin.side + 2.0 * process.pin.wall:
         faults.append(("unit.rib_width", "must hold a pin with its two walls"))
+    if process.frame.screw_hole <= process.frame.screw:
+        faults.append(("frame.screw_hole", "must be wider than the screw"))
+    if process.frame.width < process.frame.screw_hole + 2.0 * process.pin.wall:
+        faults.append(("frame.width", "must hold a screw's hole with the wall of a pin on either side"))
     return faults
 
 

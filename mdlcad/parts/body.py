@@ -24,6 +24,7 @@ class BodyKind(StrEnum):
     BIAS = "bias"
     PIN = "pin"
     POST = "post"
+    SCREW = "screw"
     SPACER = "spacer"
 
 

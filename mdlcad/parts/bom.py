@@ -15,7 +15,7 @@ from shapely import Polygon
 
 from mdlcad.mechanics.process import Process
 from mdlcad.parts.body import Body, BodyKind
-from mdlcad.parts.plates import plates_of
+from mdlcad.parts.plates import STOCK, plates_of
 
 # g/cm3 x mm3
 _GRAMS = 1e-3
@@ -68,7 +68,7 @@ class SheetLine:
 
 @dataclass(frozen=True, slots=True)
 class StockLine:
-    """Pins or posts of one profile and length; ``size_mm`` is the side of a square, the diameter of a rod."""
+    """Pins, posts or screws of one profile and length; ``size_mm`` is the side of a square, the diameter of a rod."""
 
     kind: BodyKind
     profile: Profile
@@ -104,7 +104,7 @@ def bill_of_materials(bodies: Sequence[Body], process: Process) -> Bom:
         for kind in kinds:
             parts += _part_lines(plate, material, [body for body in members if body.kind is kind], process)
         sheets += [_sheet(plate, material, group, process) for group in _by_thickness(members)]
-    stock = _stock([body for body in bodies if body.kind in (BodyKind.PIN, BodyKind.POST)], process)
+    stock = _stock([body for body in bodies if body.kind in STOCK], process)
     weighed = [line.mass_g for line in sheets if line.mass_g is not None] + [line.mass_g for line in stock]
     return Bom(tuple(parts), tuple(sheets), tuple(stock), round(sum(weighed), 3))
 

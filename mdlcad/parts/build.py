@@ -15,8 +15,10 @@ from mdlcad.parts.coupler import coupler_body
 from mdlcad.parts.frame import frame_bodies, rib_posts, ribs
 from mdlcad.parts.pins import hub_pin, hub_plates, source_of, target_of, via_pins
 from mdlcad.parts.rocker import rocker_bodies
+from mdlcad.parts.screws import screw_bodies
 from mdlcad.parts.stack import Hub, make_stack
 from mdlcad.parts.unit import unit_body
+from mdlcad.parts.windows import windows
 from mdlcad.placement.placement import Placement
 from mdlcad.routing.layout import Layout, Side
 
@@ -73,8 +75,10 @@ def build_parts(
     for tab in layout.tabs:
         notches.setdefault(tab.plate, []).extend(tab_notch(stack, tab))
     hanging = [body for body in flexures if body.kind is BodyKind.POST]
+    screws = screw_bodies(stack, boundary, [notch for cuts in notches.values() for notch in cuts])
+    openings = windows(stack, network, boundary, hub_pins, [*links, *tabs, *flexures, *screws])
     return (
-        *frame_bodies(stack, boundary, found, [*posts, *hanging], notches),
+        *frame_bodies(stack, boundary, found, [*posts, *hanging], notches, screws, openings),
         *posts,
         *clock_plates(stack, boundary, handle, clock_pins, posts),
         *clock_pins,
@@ -84,4 +88,5 @@ def build_parts(
         *via_pins(stack, layout),
         *tabs,
         *flexures,
+        *screws,
     )

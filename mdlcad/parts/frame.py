@@ -12,6 +12,7 @@ from shapely.affinity import translate
 from mdlcad.mechanics.process import PlateRole
 from mdlcad.parts import palette
 from mdlcad.parts.body import Body, BodyKind
+from mdlcad.parts.screws import screw_hole
 from mdlcad.parts.shapes import GRID, box, cut, pieces, square
 from mdlcad.parts.stack import FRAME_REF, Hub, Stack
 
@@ -84,15 +85,19 @@ def frame_bodies(
     found_ribs: Sequence[Polygon],
     posts: Sequence[Body],
     notches: Mapping[str, Sequence[Polygon]],
+    screws: Sequence[Body],
+    windows: Sequence[Polygon],
 ) -> list[Body]:
     """Base, cover, rims (with the ribs on the unit plate) and shims.
 
     Args:
         posts: all posts; those that reach the base or the cover get their holes there.
         notches: what is to be cut from the rim of a plate, by plate name.
+        screws: go through everything here. windows: go through the cover.
     """
     inside = interior(stack, boundary)
-    rim = shapely.difference(boundary, inside)
+    through = [screw_hole(stack, screw) for screw in screws]
+    rim = cut(shapely.difference(boundary, inside), through)
     bodies: list[Body] = []
     plates = stack.process.stack.plates
     for plate in plates:
@@ -101,12 +106,12 @@ def frame_bodies(
         if plate.role in (PlateRole.BASE, PlateRole.COVER):
             base = plate.role is PlateRole.BASE
             colour = palette.BASE if base else palette.COVER
-            shape = cut(boundary, holes)
+            shape = cut(boundary, [*holes, *through, *(() if base else windows)])
             bodies += _pieces(stack, plate.name, BodyKind.BASE if base else BodyKind.COVER, plate.name, shape, colour)
             continue
         shape = rim
         if plate.role is PlateRole.UNIT and found_ribs:
-            shape = cut(_filled(stack, rim, found_ribs), holes)
+            shape = cut(_filled(stack, rim, found_ribs), [*holes, *through])
         kind = BodyKind.SPACER if plate.role is PlateRole.CLOCK else BodyKind.FRAME
         colour = palette.SPACER if kind is BodyKind.SPACER else palette.FRAME
         shape = cut(shape, notches.get(plate.name, ()))

@@ -6,7 +6,7 @@ couplers            dark teal (pass a signal on)
 rockers             red (turn it over)
 bias leaves         orange
 rungs, trunks       warm greys, tabs gold (they are touched)
-frame, base, cover  light greys; pins and posts near black
+frame, base, cover  light greys; pins, posts and screws near black
 ==================  ==========================================
 """
 
@@ -24,6 +24,7 @@ ROCKER = "#d62f2f"
 BIAS = "#f08c1e"
 PIN = "#3a3f47"
 POST = "#22262c"
+SCREW = "#5b626c"
 
 _UNITS = ("#2f6fd6", "#2f9e44", "#8a4fd1")
 _CLOCKS = ("#8fb3ee", "#8fd3a0", "#c3a3ea")

@@ -24,6 +24,7 @@ _RULES = {
     "min_wall": ("no wall is thinner than the machine makes", "mm"),
     "min_gap": ("no gap is narrower than the machine makes", "mm"),
     "bed": ("every plate or tile fits the machine's bed", "mm"),
+    "trapped": ("every part comes straight down to its place past all that is there before it", "mm"),
     "seam": ("no seam between tiles crosses or comes near a flexure or a carrier", ""),
     "unrealised_coupling": ("every coupling of the network has its part", ""),
     "carrier_stiffness": ("a carrier is stiff enough for the couplers it drives", "times"),

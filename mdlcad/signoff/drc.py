@@ -19,7 +19,17 @@ from mdlcad.parts.body import Body, BodyKind
 
 # Overlaps and shortfalls below this are rounding of the drawing grid (1e-4 mm).
 TOLERANCE_MM = 5e-4
-RULES = ("overlap", "swept_clearance", "containment", "min_wall", "min_gap", "bed", "seam", "unrealised_coupling")
+RULES = (
+    "overlap",
+    "swept_clearance",
+    "containment",
+    "min_wall",
+    "min_gap",
+    "bed",
+    "seam",
+    "trapped",
+    "unrealised_coupling",
+)
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,6 +11,7 @@ from mdlcad.mechanics import Finding as SizeFinding
 from mdlcad.mechanics import Process, Sizing
 from mdlcad.mechanics.strains import check_strain
 from mdlcad.network.model import Network
+from mdlcad.parts.assembly import assembly_of
 from mdlcad.parts.body import Body
 from mdlcad.parts.plates import plates_of
 from mdlcad.parts.stiffness import CarrierStiffness, carrier_faults
@@ -21,6 +22,7 @@ from mdlcad.routing.layout import Layout
 from mdlcad.signoff.drc import RULES, Finding, check_containment, check_cut, check_motion
 from mdlcad.signoff.seams import check_tiles
 from mdlcad.signoff.summary import DesignRules
+from mdlcad.signoff.trapped import check_assembly
 
 CARRIER_RULES = ("carrier_stiffness", "shuttle_tilt")
 STRAIN_RULES = ("strain", "strain_peak")
@@ -48,6 +50,7 @@ def check_geometry(
     for plate, members in plates_of(bodies).items():
         findings += check_cut(plate, members, process.machine.min_wall, process.machine.min_gap)
         findings += check_tiles(members, tiles_of(plate, members, process), process.machine.bed, process.pin.wall)
+    findings += check_assembly([body for step in assembly_of(bodies, process) for body in step.bodies])
     where = {mass.mass: (mass.x, mass.y) for mass in placement.masses}
     findings += [
         Finding(item.rule, item.names, item.x, item.y, 0.0, 0.0, item.message)

@@ -90,7 +90,9 @@ def test_every_polygon_is_valid_and_has_no_slivers(bodies: tuple[Body, ...]) -> 
             assert all(shapely.Polygon(hole).area > 0.01 for hole in shape.interiors), body.name
         coordinates = shapely.get_coordinates(body.section)
         assert abs(coordinates - coordinates.round(4)).max() < 1e-9, body.name
-        assert len(coordinates) < 130 or body.kind in (BodyKind.CLOCK, BodyKind.FRAME), body.name
+        # a round hole has 24 corners, and the first again
+        round_holes = sum(len(hole.coords) == 25 for hole in body.section.interiors)
+        assert len(coordinates) - 25 * round_holes < 130 or body.kind in (BodyKind.CLOCK, BodyKind.FRAME), body.name
 
 
 def test_names_are_unique_and_every_mass_has_its_parts(device: Device, bodies: tuple[Body, ...]) -> None:
