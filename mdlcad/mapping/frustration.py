@@ -125,36 +125,81 @@ def _solve(graph: SignedGraph, cycles: list[tuple[int, ...]], kind: Kind) -> tup
 
 
 def violated(graph: SignedGraph, weights: Floats) -> list[tuple[int, ...]]:
-    """Odd cycles (sorted couplings) of total weight below 1, at most one through every node."""
+    """Odd cycles (sorted couplings) of total weight below 1, at most one through every node.
+
+    A path from a node to its twin is the mirror image of the way back, so each is looked for as two paths from that
+    node, of at most half the length, that meet in a coupling.
+    """
     n = graph.nodes
     best: dict[tuple[int, int], tuple[float, int]] = {}
     for i, ((a, b), negative) in enumerate(zip(graph.ends, graph.negative, strict=True)):
         if a == b:
             continue
+        step = float(weights[i]) + _TIE
         for side in (0, 1):
             other = side ^ negative
             for u, v in ((a + side * n, b + other * n), (b + other * n, a + side * n)):
-                step = float(weights[i]) + _TIE
                 if (u, v) not in best or step < best[u, v][0]:
                     best[u, v] = (step, i)
     if not best:
         return []
     keys = np.array(list(best), np.int64)
-    cover = csr_array((np.array([step for step, _ in best.values()]), (keys[:, 0], keys[:, 1])), shape=(2 * n, 2 * n))
-    distance, before = dijkstra(cover, indices=np.arange(n), limit=1.0, return_predecessors=True)
+    steps = np.array([step for step, _ in best.values()])
+    cover = csr_array((steps, (keys[:, 0], keys[:, 1])), shape=(2 * n, 2 * n))
+    through = _ends_of_few(graph)
+    if not through:
+        return []
+    distance, before = dijkstra(cover, indices=np.array(through), limit=0.5, return_predecessors=True)
+    # a step of the cover and its mirror image close the same cycles
+    once = keys[:, 0] < (keys[:, 1] + n) % (2 * n)
+    tail, mirrored, steps = keys[once, 0], (keys[once, 1] + n) % (2 * n), steps[once]
     found: dict[tuple[int, ...], None] = {}
-    for node in range(n):
-        if not distance[node, node + n] < _NEARLY_ONE:
+    for node, away, back_from in zip(through, distance, before, strict=True):
+        closed = away[tail] + steps + away[mirrored]
+        pick = int(np.argmin(closed))
+        if not closed[pick] < _NEARLY_ONE:
             continue
-        path, at = [], node + n
-        while at != node:
-            previous = int(before[node, at])
-            path.append((previous % n, at % n, best[previous, at][1]))
-            at = previous
-        cycle = _odd_cycle(path, graph.negative)
+        there, back = int(tail[pick]), int(mirrored[pick])
+        walk = [(at % n, previous % n, best[previous, at][1]) for previous, at in _steps(back_from, node, back)]
+        walk.reverse()
+        walk.append((there % n, back % n, best[there, (back + n) % (2 * n)][1]))
+        walk += [(previous % n, at % n, best[previous, at][1]) for previous, at in _steps(back_from, node, there)]
+        cycle = _odd_cycle(walk, graph.negative)
         if sum(float(weights[i]) for i in cycle) < _NEARLY_ONE:
             found[cycle] = None
     return list(found)
+
+
+def _ends_of_few(graph: SignedGraph) -> list[int]:
+    """Nodes that every odd cycle has one of: the ends of the couplings that are negative after turning nodes round.
+
+    Turning a node changes the sign of all its couplings, and no cycle's number of negative ones from odd to even. As
+    long as a node with more negative couplings than positive ones is turned, they become fewer.
+    """
+    beside: list[list[int]] = [[] for _ in range(graph.nodes)]
+    for i, (a, b) in enumerate(graph.ends):
+        if a != b:
+            beside[a].append(i)
+            beside[b].append(i)
+    minus = list(graph.negative)
+    waiting = list(range(graph.nodes))
+    while waiting:
+        node = waiting.pop()
+        if 2 * sum(minus[i] for i in beside[node]) <= len(beside[node]):
+            continue
+        for i in beside[node]:
+            minus[i] = not minus[i]
+            waiting += graph.ends[i]
+    return sorted({node for ends, left in zip(graph.ends, minus, strict=True) if left for node in ends})
+
+
+def _steps(before: npt.NDArray[np.int32], start: int, end: int) -> list[tuple[int, int]]:
+    """The shortest path's steps (from, to), the last first."""
+    steps = []
+    while end != start:
+        steps.append((int(before[end]), end))
+        end = steps[-1][0]
+    return steps
 
 
 def _odd_cycle(path: list[tuple[int, int, int]], negative: Sequence[bool]) -> tuple[int, ...]:

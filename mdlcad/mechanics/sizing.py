@@ -202,11 +202,14 @@ def _rules(
     right = _up(hub_half + unit.span + series.reach + overrun + link.gap)
     reach = {item.coupling: round(hub_half + item.leaf.reach, 6) for item in couplers}
     track = link.bar_width + link.gap
-    channel = max(reach.values(), default=0.0) + hub_half + link.gap + link.bar_width
+    # beside what most couplings reach a channel has room for all its trunks, beside the longest for one
+    one_trunk = hub_half + link.gap + link.bar_width
+    usual = median_low(reach.values()) + (link.channel_tracks - 1) * track if reach else 0.0
+    channel = one_trunk + max(usual, max(reach.values(), default=0.0))
     apart = _columns_apart(process, law, series, couplers, hub_half)
     # what most couplings allow; the few stronger ones stay within a column
     column_most = median_low(apart.values()) if apart else math.inf
-    pitch = max(_up(left + right), _up(channel + (link.channel_tracks - 1) * track))
+    pitch = max(_up(left + right), _up(channel))
     return LayoutRules(
         unit_left=left,
         unit_right=right,

@@ -2,7 +2,8 @@
 
 A net is added to or removed from running tallies, so a move costs only the nets and channels it touches. The tallies:
 items per hub side against plates, posts per hub side, straight rungs against what must lie under them, and which nets
-must run left of which. The trunks of a touched channel are then packed onto tracks (``_tracks``).
+must run left of which. The trunks of a touched channel are then packed onto tracks (``_tracks``); a channel of many
+rows is judged in bands of them, so that a move costs no more in a large device than in a small one.
 
 All compiled code is in this one file, because numba's cache does not notice a change in another.
 """
@@ -26,7 +27,7 @@ WIRE = 0.06
 ORDER = 0.03
 
 # columns of State.row, the tallies of one (channel, row); A hangs on the left of the channel, B on the right
-VIA_A, VIA_B, BIAS_A, BIAS_B, STRAIGHT, POST_A, POST_B, SPOST_A, SPOST_B, COUNT_A, COUNT_B = range(11)
+VIA_A, VIA_B, BIAS_A, BIAS_B, STRAIGHT, POST_A, POST_B, SPOST_A, SPOST_B = range(9)
 SLOT, BIAS_SIDE = 0, 1
 HOME_SIDE = 2
 
@@ -48,49 +49,32 @@ def _row_cost(t: Ints, is_open: int, plates: int) -> float:
     return HARD * cost
 
 
+@numba.njit(cache=True, error_model="numpy", forceinline=True)
+def _order_cost(t: Ints) -> float:
+    """What the orders asked for by one row cost: legal, but each takes freedom from the tracks."""
+    a, b = t[VIA_A], t[VIA_B]
+    return float(ORDER * (a * b + t[POST_A] * (a - t[POST_A]) + t[POST_B] * (b - t[POST_B])))
+
+
 @numba.njit(cache=True, error_model="numpy")
-def _piece(
-    t: Ints,
-    items: Ints,
-    before: npt.NDArray[np.int16],
-    is_open: int,
-    plates: int,
-    net: int,
-    side: int,
-    posted: bool,
-    sign: int,
-) -> float:
+def _piece(t: Ints, items: Ints, is_open: int, plates: int, net: int, side: int, posted: bool, sign: int) -> float:
     """Add (+1) or remove (-1) one trunk-borne item of net-channel ``net`` in a row; side 0 hangs on its left.
 
     What hangs on the left must run left of what hangs on the right; on one side, what has a post reaches furthest.
     """
-    cost = -_row_cost(t, is_open, plates)
+    cost = -_row_cost(t, is_open, plates) - _order_cost(t)
+    code, n = 2 * net + posted, t[VIA_A + side]
+    if sign > 0:
+        items[side, n] = code
+    else:
+        for i in range(n):
+            if items[side, i] == code:
+                items[side, i] = items[side, n - 1]
+                break
     t[VIA_A + side] += sign
     if posted:
         t[POST_A + side] += sign
-    code = 2 * net + posted
-    if sign < 0:
-        n = t[COUNT_A + side] - 1
-        t[COUNT_A + side] = n
-        for i in range(n + 1):
-            if items[side, i] == code:
-                items[side, i] = items[side, n]
-                break
-    for k in range(2):
-        for i in range(t[COUNT_A + k]):
-            j, posted_j = items[k, i] // 2, items[k, i] % 2 == 1
-            if j == net or (k == side and posted == posted_j):
-                continue
-            first = side == 0 if k != side else posted_j == (side == 0)
-            a, b = (net, j) if first else (j, net)
-            old = before[a, b]
-            before[a, b] = old + sign
-            if (sign > 0 and old == 0) or (sign < 0 and old == 1):
-                cost += sign * ORDER
-    if sign > 0:
-        items[side, t[COUNT_A + side]] = code
-        t[COUNT_A + side] += 1
-    return cost + _row_cost(t, is_open, plates)
+    return cost + _row_cost(t, is_open, plates) + _order_cost(t)
 
 
 @numba.njit(cache=True, error_model="numpy", forceinline=True)
@@ -124,7 +108,6 @@ def _half(p: Problem, s: State, mass: int, side: int, sign: int) -> float:
             t[SPOST_A + side] += sign
         return cost + _row_cost(t, is_open, plates)
     net = 2 * mass + side
-    s.dirty[channel] = 1
     low, high = row, row
     x_low, x_high = -1e9, 1e9
     free = tabs > 0
@@ -136,7 +119,7 @@ def _half(p: Problem, s: State, mass: int, side: int, sign: int) -> float:
         x_low = -1e9 if free else p.limits[channel, row, 3]
     t, items = s.row[channel], s.items[channel]
     is_open = p.is_open[channel]
-    cost = _piece(t[row], items[row], s.before, is_open[row], plates, net, 1 - side, False, sign)
+    cost = _piece(t[row], items[row], is_open[row], plates, net, 1 - side, False, sign)
     for i in range(p.mass[mass, 0], p.mass[mass + 1, 0]):
         coupling = p.outs[i]
         there = s.mass[p.coupling[coupling, 1], SLOT]
@@ -152,7 +135,7 @@ def _half(p: Problem, s: State, mass: int, side: int, sign: int) -> float:
                 x_high = min(x_high, p.hub_x[channel] - p.reach[coupling])
                 x_low = x_low if free else max(x_low, p.limits[channel, at, 3])
             posted = p.coupling[coupling, 2] != 0
-            cost += _piece(t[at], items[at], s.before, is_open[at], plates, net, hub, posted, sign)
+            cost += _piece(t[at], items[at], is_open[at], plates, net, hub, posted, sign)
     for tab in range(p.mass[mass, 2], p.mass[mass + 1, 2]):
         if p.way[tab, column, 0] == channel:
             low, high = min(low, p.tab[tab, 0]), max(high, p.tab[tab, 1])
@@ -160,7 +143,7 @@ def _half(p: Problem, s: State, mass: int, side: int, sign: int) -> float:
             for at in range(p.tab[tab, 0], p.tab[tab, 1] + 1):
                 for hub in range(2):
                     if kind == BETWEEN or hub == kind:
-                        cost += _piece(t[at], items[at], s.before, is_open[at], plates, net, hub, False, sign)
+                        cost += _piece(t[at], items[at], is_open[at], plates, net, hub, False, sign)
     cost += sign * WIRE * (high - low)
     for at in range(low, high + 1):
         x_low = max(x_low, p.limits[channel, at, 0])
@@ -168,43 +151,85 @@ def _half(p: Problem, s: State, mass: int, side: int, sign: int) -> float:
     if sign > 0:
         s.window[net, 0], s.window[net, 1] = x_low, x_high
         s.rows[net, 0], s.rows[net, 1] = low, high
-        s.trunks[channel, s.trunk_count[channel]] = net
-        s.trunk_count[channel] += 1
-    else:
-        n = s.trunk_count[channel] - 1
-        s.trunk_count[channel] = n
-        for i in range(n + 1):
-            if s.trunks[channel, i] == net:
-                s.trunks[channel, i] = s.trunks[channel, n]
-                break
+    bands = len(s.trunk_count) // s.row.shape[0]
+    size = -(-s.row.shape[1] // bands)
+    for band in range(channel * bands + low // size, channel * bands + high // size + 1):
+        _register(s.trunks[band], s.trunk_count, band, net, sign)
+        s.dirty[band] = 1
     return cost
 
 
 @numba.njit(cache=True, error_model="numpy", forceinline=True)
-def _tracks(p: Problem, s: State, channel: int) -> float:
-    """Penalty of a channel's trunks: how far past their windows the best-first packing from the left pushes them.
+def _register(trunks: Ints, count: Ints, band: int, net: int, sign: int) -> None:
+    """Add (+1) or remove (-1) a trunk in the list of a band."""
+    n = count[band]
+    count[band] = n + sign
+    if sign > 0:
+        trunks[n] = net
+        return
+    for i in range(n):
+        if trunks[i] == net:
+            trunks[i] = trunks[n - 1]
+            return
+
+
+@numba.njit(cache=True, error_model="numpy", forceinline=True)
+def _ask(s: State, first: int, second: int, n: int) -> int:
+    """Note that a row asks for item ``first`` left of item ``second``; the number of orders noted."""
+    a, b = s.seat[first // 2], s.seat[second // 2]
+    if a == b:
+        return n
+    s.orders[n, 0], s.orders[n, 1], s.orders[n, 2] = a, b, s.last[a]
+    s.last[a] = n
+    s.waits[b] += 1
+    return n + 1
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _orders(s: State, channel: int, low: int, high: int) -> int:
+    """List which trunks must run left of which, as rows low..high - 1 of a channel ask for; how many."""
+    n = 0
+    for row in range(low, high):
+        t, items = s.row[channel, row], s.items[channel, row]
+        for i in range(t[VIA_A]):
+            for j in range(t[VIA_B]):
+                n = _ask(s, items[0, i], items[1, j], n)
+        for side in range(2):
+            if t[POST_A + side] == 0:
+                continue
+            # what has a post reaches furthest from its hub
+            for i in range(t[VIA_A + side]):
+                for j in range(t[VIA_A + side]):
+                    if items[side, i] % 2 == side and items[side, j] % 2 == 1 - side:
+                        n = _ask(s, items[side, i], items[side, j], n)
+    return n
+
+
+@numba.njit(cache=True, error_model="numpy", forceinline=True)
+def _tracks(p: Problem, s: State, band: int) -> float:
+    """Penalty of a band's trunks: how far past their windows the best-first packing from the left pushes them.
 
     Each step takes, of the trunks that could stand furthest left now, the one with the tightest right limit (limits
     are passed back along the order that rows ask for). Zero means that legal tracks exist: the packing is one.
     """
-    n = s.trunk_count[channel]
+    n = s.trunk_count[band]
+    bands = len(s.trunk_count) // s.row.shape[0]
+    rows = s.row.shape[1]
+    size = -(-rows // bands)
     pitch = p.sizes[1]
-    nets, at, due, waits = s.trunks[channel], s.at, s.due, s.waits
+    nets, at, due, waits = s.trunks[band], s.at, s.due, s.waits
     cost = 0.0
     for i in range(n):
         at[i], due[i] = s.window[nets[i], 0], s.window[nets[i], 1]
-        waits[i] = 0
+        waits[i], s.last[i], s.seat[nets[i]] = 0, -1, i
         if due[i] < at[i] - 1e-6:
             cost += HARD * (1 + (at[i] - due[i]) / pitch)
             due[i] = at[i]
-        for j in range(n):
-            if s.before[nets[j], nets[i]] > 0:
-                waits[i] += 1
+    low = band % bands * size
+    asked = _orders(s, band // bands, low, min(rows, low + size))
     for _ in range(2):
-        for i in range(n):
-            for j in range(n):
-                if s.before[nets[i], nets[j]] > 0:
-                    due[i] = min(due[i], due[j] - pitch)
+        for k in range(asked):
+            due[s.orders[k, 0]] = min(due[s.orders[k, 0]], due[s.orders[k, 1]] - pitch)
     for left in range(n, 0, -1):
         first = 1e18
         for i in range(n):
@@ -221,14 +246,15 @@ def _tracks(p: Problem, s: State, channel: int) -> float:
         if late > 1e-6 and s.window[nets[best], 0] <= s.window[nets[best], 1]:
             cost += HARD * (0.5 + late / pitch)
         waits[best] = -1
-        low, high = s.rows[nets[best], 0], s.rows[nets[best], 1]
+        lowest, highest = s.rows[nets[best], 0], s.rows[nets[best], 1]
         for i in range(n):
-            if waits[i] >= 0:
-                order = s.before[nets[best], nets[i]] > 0
-                if order:
-                    waits[i] -= 1
-                if order or (s.rows[nets[i], 0] <= high and low <= s.rows[nets[i], 1]):
-                    at[i] = max(at[i], at[best] + pitch)
+            if waits[i] >= 0 and s.rows[nets[i], 0] <= highest and lowest <= s.rows[nets[i], 1]:
+                at[i] = max(at[i], at[best] + pitch)
+        k = s.last[best]
+        while k >= 0:
+            # those that share a row overlap, so they have been moved on already
+            waits[s.orders[k, 1]] -= 1
+            k = s.orders[k, 2]
     return cost
 
 

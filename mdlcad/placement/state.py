@@ -11,6 +11,8 @@ from mdlcad.placement.problem import Floats, Ints, Problem
 
 DEEP = 16
 """Most items that can meet one side of a row of a channel."""
+BAND = 24
+"""Most rows whose trunks are packed together; trunks of more rows take the packing's cost in each of their bands."""
 
 
 class State(NamedTuple):
@@ -18,12 +20,14 @@ class State(NamedTuple):
 
     Attributes:
         mass: (M, 2) slot, side of the bias leaf. mass_at: mass or -1 by slot. side: (J,) channel side of couplings.
-        row: (C, R, 11) tallies of a row of a channel.
+        row: (C, R, 9) tallies of a row of a channel.
         items: (C, R, 2, DEEP) what meets a row on either side: 2 * net-channel + whether it has a post.
-        before: [i, j] counts the rows in which net-channel i must run left of net-channel j.
-        trunks, trunk_count: the net-channels with a trunk, by channel.
+        trunks, trunk_count: the net-channels with a trunk, by band: band B c + b holds those that enter the b-th of
+            B equal parts of the rows of channel c.
         window, rows: by net-channel, lowest and highest x (mm) and row of its trunk.
-        dirty: channels whose trunks have changed. at, due, waits: room for packing tracks.
+        dirty: bands whose trunks have changed.
+        seat: by net-channel, its place in the band that is being packed. at, due, waits, last, orders: room for
+            packing tracks; an order is (first, second, order before it with the same first or -1).
         home: (max(M, J), 3) by mass the slot and bias side, by coupling the channel side that it should keep, or -1.
         price: what it costs a mass to leave its home slot, and a leaf or coupling its home side.
     """
@@ -33,15 +37,17 @@ class State(NamedTuple):
     side: Ints
     row: Ints
     items: Ints
-    before: npt.NDArray[np.int16]
     trunks: Ints
     trunk_count: Ints
     window: Floats
     rows: Ints
     dirty: Ints
+    seat: Ints
     at: Floats
     due: Floats
     waits: Ints
+    last: Ints
+    orders: Ints
     home: Ints
     price: Floats
 
@@ -55,23 +61,26 @@ def start(problem: Problem, slot_of: Ints, seed: int) -> tuple[State, npt.NDArra
     masses, channels, rows = len(slot_of), problem.limits.shape[0], problem.limits.shape[1]
     if masses and int(np.max(np.diff(problem.mass[:, 1]))) + 6 > DEEP:
         raise ValueError("a mass has too many inputs for the placer")
+    bands = channels * max(1, -(-rows // BAND))
     mass_at = np.full(len(problem.slot), -1, np.int32)
     mass_at[slot_of] = np.arange(masses, dtype=np.int32)
     state = State(
         mass=np.stack([slot_of, np.zeros_like(slot_of)], axis=1).astype(np.int32),
         mass_at=mass_at,
         side=np.zeros(len(problem.coupling), np.int32),
-        row=np.zeros((channels, rows, 11), np.int32),
+        row=np.zeros((channels, rows, 9), np.int32),
         items=np.zeros((channels, rows, 2, DEEP), np.int32),
-        before=np.zeros((2 * masses, 2 * masses), np.int16),
-        trunks=np.zeros((channels, masses + 1), np.int32),
-        trunk_count=np.zeros(channels, np.int32),
+        trunks=np.zeros((bands, masses + 1), np.int32),
+        trunk_count=np.zeros(bands, np.int32),
         window=np.zeros((2 * masses, 2)),
         rows=np.zeros((2 * masses, 2), np.int32),
-        dirty=np.zeros(channels, np.int32),
+        dirty=np.zeros(bands, np.int32),
+        seat=np.zeros(2 * masses, np.int32),
         at=np.zeros(masses + 1),
         due=np.zeros(masses + 1),
         waits=np.zeros(masses + 1, np.int32),
+        last=np.zeros(masses + 1, np.int32),
+        orders=np.zeros((min(rows, BAND) * 3 * DEEP * DEEP, 3), np.int32),
         home=np.full((max(masses, len(problem.coupling)), 3), -1, np.int32),
         price=np.zeros(2),
     )

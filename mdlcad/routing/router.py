@@ -11,8 +11,9 @@ from mdlcad.placement.lattice import Lattice
 from mdlcad.placement.placement import Placement
 from mdlcad.placement.placer import choose_sides
 from mdlcad.routing.assemble import assemble
-from mdlcad.routing.channel import ChannelRoute, solve
+from mdlcad.routing.channel import ChannelRoute
 from mdlcad.routing.gather import channels
+from mdlcad.routing.horizon import solve_any
 from mdlcad.routing.jam import Jam, JamError
 from mdlcad.routing.judge import Judge, Objection, lowered, no_objection
 from mdlcad.routing.keep import Keeper
@@ -61,7 +62,7 @@ def route(
     lattice = lattice_of(placement, rules)
     jam = JamError(f"{network.design} has no channels", Jam(placement))
     turns = range(SIDE_TRIES) if keeper is None else keeper.turns(placement, lattice, rules, SIDE_TRIES)
-    choose, solve_channel = (choose_sides, solve) if keeper is None else (keeper.sides, keeper.solve)
+    choose, solve_channel = (choose_sides, solve_any) if keeper is None else (keeper.sides, keeper.solve)
     for attempt, turn in enumerate(turns):
         sides = choose(network, placement, lattice, rules, seed + attempt)
         work = channels(network, placement, lattice, sides, rules, turn)

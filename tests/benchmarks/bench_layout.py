@@ -1,0 +1,147 @@
+"""Time and memory of placing and routing against the number of masses; the plot goes to docs/images/layout-cost.png.
+
+    ./run python -m tests.benchmarks.bench_layout [--reach COPIES] [--fill SHARE] [--png PATH] [COPIES ...]
+
+The networks are copies of the lock's as compiled, one tenth of the couplings swapped between copies at most
+``--reach`` apart (default 1; as large as the number of copies for any two). The lattice is that of a square in which
+the masses fill ``--fill`` of the slots (default 0.6), sized for ``pom_cut``. Every size runs in a process of its own.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+
+from mdlcad.artefact import from_json, to_json
+from mdlcad.errors import SignoffError
+from mdlcad.language import read_device
+from mdlcad.mapping import load_library, map_netlist
+from mdlcad.mechanics import load_process, size
+from mdlcad.mechanics.rules import LayoutRules
+from mdlcad.network.model import Network
+from mdlcad.placement.anneal import HARD
+from mdlcad.placement.lattice import Lattice, lattices, place_ports
+from mdlcad.placement.placer import place
+from mdlcad.placement.ports import PortPlace
+from mdlcad.routing.check import check_layout
+from mdlcad.routing.router import route
+from mdlcad.synthesis import synthesise
+from tests.benchmarks.devices import ROOT
+from tests.placement.networks import SQUARE
+from tests.placement.tiles import tiled
+
+COPIES = (1, 2, 4, 10, 20)
+PEAK = 1.8
+"""Largest |x|, as in the lock's own simulation."""
+
+
+def lattice_for(network: Network, rules: LayoutRules, fill: float) -> Lattice:
+    """The smallest square's best lattice in which ``network`` fills ``fill`` of the slots."""
+    ports = tuple(
+        PortPlace(bit.bit, "left", 0, 39 * (i + 1) / (len(network.sensors) + 1), (-1.0, 0.0))
+        for i, bit in enumerate(network.sensors)
+    ) + tuple(PortPlace(bit.bit, "right", 39, 19.5, (1.0, 0.0)) for bit in network.actuators)
+    need = math.ceil(len(network.masses) / fill)
+    scale = math.sqrt(need * (rules.unit_left + rules.unit_right) * rules.row_pitch) / 39
+    while True:
+        found = lattices(SQUARE, place_ports(network, ports, scale), rules, scale, need)
+        if found:
+            return found[0]
+        scale *= 1.01
+
+
+def measure(network: Network, fill: float) -> dict[str, Any]:
+    """One size: seconds, conflicts left by the placer, findings of the checker."""
+    rules = size(network, load_process("pom_cut"), {mass.name: PEAK for mass in network.masses}).rules
+    lattice = lattice_for(network, rules, fill)
+    began = time.perf_counter()
+    placed = place(network, lattice, rules, 1)
+    middle = time.perf_counter()
+    words, findings = "", -1
+    try:
+        layout = route(network, placed.placement, rules, 1)
+    except SignoffError as error:
+        words = str(error)
+    spent = time.perf_counter() - middle
+    if not words:
+        findings = len(check_layout(network, placed.placement, layout, rules))
+    return {
+        "masses": len(network.masses),
+        "couplings": len(network.couplings),
+        "columns": len(lattice.column_x),
+        "place": round(middle - began, 2),
+        "cost": round(placed.cost, 1),
+        "route": round(spent, 2),
+        "findings": findings,
+        "mb": round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024),
+        "words": words,
+    }
+
+
+def main() -> None:
+    """Measure every size in a process of its own, print the table, draw the plot."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument("copies", type=int, nargs="*", default=list(COPIES))
+    parser.add_argument("--reach", type=int, default=1)
+    parser.add_argument("--fill", type=float, default=0.6)
+    parser.add_argument("--limit", type=float, default=600.0, help="seconds a size")
+    parser.add_argument("--png", type=Path, default=ROOT / "docs" / "images" / "layout-cost.png")
+    parser.add_argument("--one", type=Path, help="measure the one size, of the network in this file")
+    options = parser.parse_args()
+    if options.one:
+        network = from_json(options.one.read_bytes(), Network)
+        print(json.dumps(measure(tiled(network, options.copies[0], 0.1, options.reach, 1), options.fill)))
+        return
+    rows = []
+    with tempfile.TemporaryDirectory() as folder:
+        lock = Path(folder) / "network.json"
+        netlist = synthesise(read_device(ROOT / "examples" / "lock.mdl"))
+        lock.write_bytes(to_json(map_netlist(netlist, load_library("parametron"))))
+        for copies in (1, *options.copies):  # the first run may compile the kernel; it is not counted
+            again = [sys.executable, "-m", "tests.benchmarks.bench_layout", str(copies), "--one", str(lock)]
+            again += ["--reach", str(options.reach), "--fill", str(options.fill)]
+            try:
+                done = subprocess.run(again, cwd=ROOT, check=True, capture_output=True, timeout=options.limit)
+            except subprocess.TimeoutExpired:
+                print(f"{copies} copies: not done in {options.limit:g} s")
+                break
+            rows.append(json.loads(done.stdout))
+            row = rows[-1]
+            if len(rows) > 1:
+                print(
+                    f"{row['masses']:6} masses {row['couplings']:6} couplings {row['columns']:4} columns  "
+                    f"place {row['place']:7.1f} s (conflicts {row['cost'] / HARD:.0f})  route {row['route']:7.1f} s  "
+                    f"{row['findings']} findings  {row['mb']} MB  {row['words'][:100]}",
+                    flush=True,
+                )
+    draw(rows[1:], options.png)
+
+
+def draw(rows: list[dict[str, Any]], png: Path) -> None:
+    """Seconds against masses."""
+    figure, axes = plt.subplots(figsize=(6.4, 4.2), dpi=150)
+    for key, colour in (("place", "#1b6ca8"), ("route", "#c8553d")):
+        axes.loglog([r["masses"] for r in rows], [r[key] for r in rows], "o-", color=colour, label=key, markersize=4)
+    axes.set_xlabel("masses (copies of the lock, a tenth of the couplings swapped)")
+    axes.set_ylabel("seconds, one core")
+    axes.grid(True, which="major", color="0.9")
+    axes.legend(frameon=False)
+    figure.tight_layout()
+    figure.savefig(png, metadata={"Software": None})
+
+
+if __name__ == "__main__":
+    main()
