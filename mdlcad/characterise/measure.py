@@ -119,6 +119,30 @@ def count_spreads(
     )
 
 
+def borne_limits(counts: Iterable[LoadCount], load_limit: int, echo_limit: int) -> tuple[int, int]:
+    """Greatest fan-out and greatest echo at which, as at all smaller ones tried, every device was right; 0 if none.
+
+    Args:
+        load_limit, echo_limit: the library's; the fan-out is judged at echoes up to that limit, the echo likewise.
+    """
+    counts = tuple(counts)
+    loads = ((count.load, count) for count in counts if count.echo <= echo_limit)
+    echoes = ((count.echo, count) for count in counts if count.load <= load_limit)
+    return _borne(loads), _borne(echoes)
+
+
+def _borne(counts: Iterable[tuple[int, LoadCount]]) -> int:
+    worst: dict[int, bool] = {}
+    for size, count in counts:
+        worst[size] = worst.get(size, True) and count.right == count.samples
+    borne = 0
+    for size in sorted(worst):
+        if not worst[size]:
+            break
+        borne = size
+    return borne
+
+
 def borne_spread(counts: Iterable[SpreadCount]) -> float:
     """The greatest spread up to which every cell is right in ``BORNE`` of its devices; 0 if there is none."""
     borne = 0.0
@@ -133,8 +157,11 @@ def borne_spread(counts: Iterable[SpreadCount]) -> float:
 
 
 def corners(period: float, damping: float) -> tuple[tuple[float, float], ...]:
-    """(T, b) where candidates compete: clocks of half and of twice the period, and a quarter of the damping."""
-    return ((period / 2, damping), (2 * period, damping), (period, damping / 4))
+    """(T, b) where candidates compete: half, twice and ten times the period, and a quarter of the damping.
+
+    Ten times the period is almost quasi-static, as a device cranked by hand is.
+    """
+    return ((period / 2, damping), (2 * period, damping), (10 * period, damping), (period, damping / 4))
 
 
 def compete(

@@ -33,28 +33,28 @@ class Sweep:
 
 
 THRESHOLD_SWEEP = Sweep(
-    periods=(3.0, 5.0, 10.0, 40.0),
-    dampings=(0.05, 0.1, 0.25, 0.5),
+    periods=(2.0, 3.0, 5.0, 10.0, 20.0, 40.0),
+    dampings=(0.025, 0.05, 0.1, 0.25, 0.5, 1.0),
     spreads=(0.03, 0.05, 0.1),
     samples=10,
-    loads=(4, 8, 12),
-    echoes=(6, 10, 16),
+    loads=(4, 8, 12, 16),
+    echoes=(6, 10, 12, 16),
     load_spread=0.06,
     load_samples=3,
     candidates=(
         ("coupling.strength", (0.1, 0.15, 0.2, 0.25, 0.3)),
         ("bias.force", (0.2, 0.25, 0.3, 0.35)),
-        # 5.0 does better still (74 of 96 devices, against 49 with 3.0), but the stroke and the force of the clock grow
-        # with the swing of k; 5.5, which 3.0 takes, is what the processes are laid out for
-        ("mass.k0", (1.5, 3.0)),
+        ("mass.k0", (1.5, 2.5, 3.0, 3.5, 4.0, 5.0, 6.0)),
+        ("dynamics.period", (5.0, 10.0, 20.0)),
+        # damping is no choice: it is what air and bearings give; the map says which are borne
     ),
     choice_spread=0.15,
     choice_samples=2,
 )
 
 NOR_SWEEP = Sweep(
-    periods=(1.5, 5.0, 20.0),
-    dampings=(0.05, 0.25, 0.5),
+    periods=(1.0, 1.5, 3.0, 5.0, 10.0, 20.0, 40.0),
+    dampings=(0.025, 0.05, 0.1, 0.25, 0.5, 1.0),
     spreads=(0.05, 0.1),
     samples=10,
     loads=(),

@@ -53,12 +53,14 @@ def differences(
     standing: Characterisation | None,
     numbers: tuple[float | str, ...],
     sweep: Sweep,
+    limits: tuple[int, int] = (0, 0),
 ) -> tuple[str, ...]:
-    """Where the file is not as measured: its windows at the periods that were tried, its spread, its numbers.
+    """Where the file is not as measured: its windows at the periods that were tried, its spread, numbers and limits.
 
     Args:
         standing: the file's table, None if it has none.
         numbers: the file's numbers under the keys of ``found.choice``.
+        limits: the file's limits of fan-out and echo, where these were tried.
     """
     said = []
     for choice, number in zip(found.choice, numbers, strict=True):
@@ -69,6 +71,9 @@ def differences(
                 f"{choice.key} is {number}, with which {rights[number]} of {choice.devices} devices are right; "
                 f"choose {best}, with which {rights[best]} are"
             )
+    for what, limit, borne in (("fan-out", limits[0], found.fan_out), ("echo", limits[1], found.echo)):
+        if limit > borne:
+            said.append(f"the limit of {what} is {limit}; choose {borne}, the greatest at which all devices were right")
     if standing is None:
         return (*said, "the library has no table [characterisation]; add the one that is written here")
     for period in sweep.periods:
@@ -77,6 +82,9 @@ def differences(
             said.append(f"[characterisation] says of T = {period:g}: {_words(was)}; measured: {_words(now)}")
     if standing.spread != found.spread:
         said.append(f"[characterisation] says spread {standing.spread:g}; measured: {found.spread:g}")
+    for what, was_borne, borne in (("fan_out", standing.fan_out, found.fan_out), ("echo", standing.echo, found.echo)):
+        if sweep.loads and was_borne != borne:
+            said.append(f"[characterisation] says {what} {was_borne}; measured: {borne}")
     return tuple(said)
 
 
@@ -104,6 +112,8 @@ def toml_table(found: Characterisation, library: str) -> str:
         f"least_damping = {numbers(found.least_damping)}",
         f"greatest_damping = {numbers(found.greatest_damping)}",
     ]
+    if found.fan_out or found.echo:
+        lines += [f"fan_out = {found.fan_out}", f"echo = {found.echo}"]
     for choice in found.choice:
         lines += [
             "",

@@ -15,6 +15,7 @@ from mdlcad.characterise.measure import (
     LoadCount,
     Runner,
     Trial,
+    borne_limits,
     borne_spread,
     compete,
     count_spreads,
@@ -89,7 +90,9 @@ def _of_threshold(
         standing.append(number)
         _tell_choice(choices[-1], number, say)
     loads = _loads(library, sweep, task.seed, runner)
-    return _finish(task, library, benches, sweep, (own.period, own.damping), (choices, standing), loads, runner, say)
+    limits = (library.gates.load_limit, library.gates.echo_limit) if loads else (0, 0)
+    at = (own.period, own.damping)
+    return _finish(task, library, benches, sweep, at, (choices, standing), loads, limits, runner, say)
 
 
 def _of_two_phase(
@@ -108,7 +111,9 @@ def _of_two_phase(
         standing.append(library.parameters)
         _tell_choice(choices[-1], library.parameters, say)
     benches = [*cell_benches(library, task.seed), reference_bench(library, task.seed)]
-    return _finish(task, library, benches, sweep, (own.period, own.damping), (choices, standing), (), runner, say)
+    return _finish(
+        task, library, benches, sweep, (own.period, own.damping), (choices, standing), (), (0, 0), runner, say
+    )
 
 
 def _finish(
@@ -119,16 +124,20 @@ def _finish(
     at: tuple[float, float],
     choice: tuple[list[Choice], Sequence[float | str]],
     loads: tuple[LoadCount, ...],
+    limits: tuple[int, int],
     runner: Runner,
     say: Callable[[str], None],
 ) -> CharacterisationResult:
     """The window and the spreads of ``benches``, and all of it together."""
     points = map_window(benches, sweep, runner)
     spreads = count_spreads(benches, *at, sweep, runner)
-    found = replace(conclude(points, borne_spread(spreads)), choice=tuple(choice[0]))
+    fan_out, echo = borne_limits(loads, *limits)
+    found = replace(conclude(points, borne_spread(spreads)), choice=tuple(choice[0]), fan_out=fan_out, echo=echo)
     standing = tuple(choice[1])
     for period, least, greatest in zip(found.periods, found.least_damping, found.greatest_damping, strict=True):
         say(f"T = {period:g}: all {len(benches)} cells and circuits right from b = {least:g} to {greatest:g}")
+    if loads:
+        say(f"fan-out {fan_out}, echo {echo}: every device right up to these (limits: {limits[0]}, {limits[1]})")
     say(f"spread {found.spread:g}: at least nine in ten devices of every cell right at T = {at[0]:g}, b = {at[1]:g}")
     return CharacterisationResult(
         library=library.name,
@@ -142,7 +151,7 @@ def _finish(
         loads=loads,
         found=found,
         standing=standing,
-        differences=differences(found, library.characterisation, standing, sweep),
+        differences=differences(found, library.characterisation, standing, sweep, limits),
     )
 
 

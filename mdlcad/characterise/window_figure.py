@@ -82,20 +82,22 @@ def _colour(number: int, total: int) -> tuple[float, float, float]:
 
 def _draw_choices(figure: Figure, place: SubplotSpec, result: CharacterisationResult) -> None:
     choices = result.found.choice
-    grid = place.subgridspec(1, max(1, len(choices)), wspace=0.12)
+    # as wide as the numbers of candidates
+    widths = [len(choice.candidates) + 1 for choice in choices] or [1]
+    grid = place.subgridspec(1, len(widths), wspace=0.12, width_ratios=widths)
     for number, (choice, standing) in enumerate(zip(choices, result.standing, strict=True)):
         axes = figure.add_subplot(grid[0, number])
         share = [100 * right / choice.devices for right in choice.right]
         colours = [GOOD if value == standing else ZERO for value in choice.candidates]
         axes.bar(range(len(share)), share, color=colours, width=0.7)
         words = [value if isinstance(value, str) else f"{value:g}" for value in choice.candidates]
-        axes.set_xticks(range(len(share)), words, fontsize=8)
+        axes.set_xticks(range(len(share)), words, fontsize=7.5)
         axes.set_xlabel(choice.key, fontsize=8.5)
         axes.set_ylim(0, 100)
         if number:
             axes.set_yticklabels([])
         else:
-            axes.set_ylabel("devices right at three corners, %")
+            axes.set_ylabel("devices right at four corners, %")
             spread = 100 * result.sweep.choice_spread
             axes.set_title(
                 f"candidates at {spread:g} % spread (green: the library's)", fontsize=10, color=INK, loc="left"

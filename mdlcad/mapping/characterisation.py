@@ -36,6 +36,9 @@ class Characterisation:
         spread: greatest spread tried at which at least nine in ten of the sampled devices of every cell, and of the
             reference circuit, were right, at the library's own T and b.
         choice: what the library's numbers were chosen among.
+        fan_out, echo: greatest fan-out tried (at echoes up to the library's limit) and greatest echo tried (at
+            fan-outs up to the library's limit) at which, as at all smaller ones, every sampled device was right; 0 if
+            none was tried.
     """
 
     periods: tuple[float, ...]
@@ -43,3 +46,5 @@ class Characterisation:
     greatest_damping: tuple[float, ...]
     spread: float
     choice: tuple[Choice, ...] = ()
+    fan_out: int = 0
+    echo: int = 0

@@ -37,6 +37,7 @@ def _window(found: Characterisation | None) -> list[str]:
     return [
         *(f"  {'works for' if place == 0 else '':<9}  {line}" for place, line in enumerate(words)),
         f"  spread     every cell bears {found.spread:g}",
+        *([f"  bears      fan-out {found.fan_out}, echo {found.echo}"] if found.fan_out else []),
     ]
 
 

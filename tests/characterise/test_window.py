@@ -13,9 +13,11 @@ from mdlcad.artefact import from_json
 from mdlcad.characterise.bench import Setting, is_right
 from mdlcad.characterise.circuits import threshold_circuits
 from mdlcad.characterise.measure import (
+    LoadCount,
     MapPoint,
     Runner,
     SpreadCount,
+    borne_limits,
     borne_spread,
     chosen,
     count_spreads,
@@ -57,6 +59,24 @@ def test_a_spread_is_borne_if_every_cell_bears_it_and_all_smaller_ones() -> None
     assert borne_spread(counts((10, 10), (9, 10), (10, 8))) == pytest.approx(0.2)
     assert borne_spread(counts((10, 8), (10, 10))) == 0.0
     assert borne_spread([]) == 0.0
+
+
+def test_a_limit_is_borne_if_every_device_is_right_up_to_it() -> None:
+    def count(load: int, echo: int, right: int) -> LoadCount:
+        return LoadCount("x", load, echo, right, 3)
+
+    counts = [count(4, 6, 3), count(4, 10, 3), count(4, 16, 2), count(8, 6, 3), count(8, 10, 3), count(8, 16, 0)]
+    assert borne_limits(counts, 8, 10) == (8, 10)
+    assert borne_limits([*counts, count(12, 6, 3), count(12, 10, 2), count(16, 6, 3)], 8, 10) == (8, 10)
+    assert borne_limits([*counts, count(12, 16, 0)], 8, 16) == (0, 10)
+    assert borne_limits([], 8, 10) == (0, 0)
+
+
+def test_a_limit_beyond_what_is_borne_is_told() -> None:
+    found = Characterisation((2.0,), (0.1,), (0.5,), 0.1, (), 4, 6)
+    said = differences(found, found, (), THRESHOLD_SWEEP, (8, 6))
+    assert said == ("the limit of fan-out is 8; choose 4, the greatest at which all devices were right",)
+    assert "says echo 10; measured: 6" in differences(found, replace(found, echo=10), (), THRESHOLD_SWEEP, (4, 6))[0]
 
 
 def test_a_number_stands_unless_another_is_surely_better() -> None:
@@ -133,6 +153,7 @@ def test_the_library_numbers_are_what_the_rule_chooses_of_the_stated_counts() ->
         "coupling.strength": library.coupling.strength,
         "bias.force": library.bias.force,
         "mass.k0": library.mass.k0,
+        "dynamics.period": library.dynamics.period,
     }
     assert {choice.key for choice in library.characterisation.choice} == set(numbers)
     for choice in library.characterisation.choice:

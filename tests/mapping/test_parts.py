@@ -174,8 +174,8 @@ def test_the_shipped_library_loads() -> None:
 @pytest.mark.parametrize(
     ("change", "expected"),
     [
-        (("k0 = 3.0", "k0 = -3.0"), "mass.k0 must be positive"),
-        (("k1 = -2.75", "k1 = -1.0"), "mass.k1 k0 + 2 k1 must be negative"),
+        (("k0 = 3.5", "k0 = -3.5"), "mass.k0 must be positive"),
+        (("k1 = -3.0", "k1 = -1.0"), "mass.k1 k0 + 2 k1 must be negative"),
         (("phases = 3", "phases = 2"), "dynamics.phases must be 3"),
         (("strength = 0.2", 'strength = "soft"'), "$.coupling.strength"),
         (("strength = 0.2", "strenght = 0.2"), "unknown key 'coupling.strenght'"),

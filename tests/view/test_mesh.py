@@ -63,10 +63,10 @@ def test_displacements_are_the_mechanics_lengths(model: Model) -> None:
     x = np.array([1.0, -1.0, 0.0, 0.5, 0.0, 0.0])
     found = displacements(built, x, np.array([2.0, 1.0, 0.0]))
     assert np.all(found[0] == 0.0)
-    # k falls by 2.75 as the wave of phase 0 rises from 1 to 2, so the plate pushes towards the shuttles, to lower x
-    assert found[1, 0] == pytest.approx(-2.75 * built.sizing.law.stroke_per_k)
+    # k falls by 3 as the wave of phase 0 rises from 1 to 2, so the plate pushes towards the shuttles, to lower x
+    assert found[1, 0] == pytest.approx(-3.0 * built.sizing.law.stroke_per_k)
     assert found[2, 0] == 0.0
-    assert found[3, 0] == pytest.approx(2.75 * built.sizing.law.stroke_per_k)
+    assert found[3, 0] == pytest.approx(3.0 * built.sizing.law.stroke_per_k)
     assert abs(found[1, 0]) <= built.sizing.rules.clock_throw
     assert np.all(found[4:, 1] == built.process.unit.throw_unit * x)
     assert np.all(found[4:, 0] == 0.0)

@@ -167,7 +167,7 @@ def test_the_address_finds_a_unit_and_shows_its_card_and_its_colour(written: byt
     if not (tmp_path / "a.png").exists():  # some versions do one of the two
         browse(tmp_path, f"--screenshot={tmp_path / 'a.png'}", address)
     card = re.search(r'<div id="card"[^>]*>(.*?)</div>', dom, re.DOTALL)[1]
-    assert "<h2>unit.verdict[0]</h2>" in card and "3 - 2.75 p" in card and "margin" in card
+    assert "<h2>unit.verdict[0]</h2>" in card and "3.5 - 3 p" in card and "margin" in card
     assert 'id="legend"' in dom and "+1: logic 1 is at +y" in dom
     pixels = np.asarray(Image.open(tmp_path / "a.png").convert("RGB")).astype(int)
     # the colour of what was found, lit from above

@@ -23,7 +23,7 @@ def test_a_unit_s_card_has_the_mass_s_numbers_and_its_nets() -> None:
     card = CARDS[NUMBER["unit.m3"]]
     found = dict(card.facts)
     assert card.subject == "unit m3"
-    assert (found["phase"], found["k"], found["bias q"]) == ("0", "3 - 2.75 p", "none")
+    assert (found["phase"], found["k"], found["bias q"]) == ("0", "3.5 - 3 p", "none")
     assert found["polarity"].startswith("+1")
     assert found["from"] == "m0 (+0.3)" and found["to"] == "nothing"
     assert facts("unit.m2")["bias q"] == "+0.5"
