@@ -23,6 +23,7 @@ from mdlcad.proof.outcome import Proof
 from mdlcad.report.report import Report, Search
 from mdlcad.routing.layout import Layout
 from mdlcad.scenario.result import ScenarioResult
+from mdlcad.signoff.extraction import BuiltDevice
 from mdlcad.signoff.lvs import LvsResult
 from mdlcad.signoff.summary import DesignRules
 from mdlcad.synthesis.netlist import Netlist
@@ -43,6 +44,7 @@ ARTEFACTS: dict[str, Any] = {
     "drc": DesignRules,
     "drive": DriveLoads,
     "extraction": tuple[LvsResult, Proof],
+    "built": BuiltDevice,
     "report": Report,
     "result": ScenarioResult,
     "diff": Comparison,

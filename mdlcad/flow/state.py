@@ -23,6 +23,7 @@ from mdlcad.proof.outcome import Proof
 from mdlcad.report.report import Search
 from mdlcad.routing.driver import SMALLEST, Size
 from mdlcad.routing.layout import Layout
+from mdlcad.signoff.extraction import BuiltDevice
 from mdlcad.signoff.lvs import LvsResult
 from mdlcad.signoff.summary import DesignRules
 from mdlcad.synthesis.netlist import Netlist
@@ -97,6 +98,7 @@ class State:
     pictures: tuple[str, ...] = ()
     lvs: LvsResult | None = None
     extracted: Proof | None = None
+    built: BuiltDevice | None = None
 
 
 def narrowed(state: State, fields: tuple[str, ...]) -> State:

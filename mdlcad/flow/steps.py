@@ -32,10 +32,12 @@ from mdlcad.report.report import Search
 from mdlcad.routing import find_lack
 from mdlcad.routing.drawing import draw_layout
 from mdlcad.routing.layout import Layout
-from mdlcad.signoff.extraction import extract
+from mdlcad.signoff.drawn import measure_device
+from mdlcad.signoff.extraction import Built, BuiltDevice
 from mdlcad.signoff.geometry import check_geometry
 from mdlcad.signoff.lvs import LvsResult, compare, recover
 from mdlcad.signoff.readback import read_step
+from mdlcad.signoff.sections import read_cut
 from mdlcad.signoff.summary import DesignRules
 from mdlcad.synthesis import synthesise
 from mdlcad.synthesis.netlist import Netlist
@@ -161,15 +163,18 @@ def _export(job: Job, state: State, progress: Progress) -> State:
 
 def _lvs(job: Job, state: State, progress: Progress) -> State:
     network = need(state.network)
-    recovered = recover(read_step(job.folder / f"{network.design}.step"))
+    found = read_step(job.folder / f"{network.design}.step")
+    recovered = recover(found)
     result = compare(recovered, network)
-    extracted = prove(
-        extract(recovered, network, need(state.sizing)),
-        build_reference(need(state.device)),
-        seed=job.seed,
-        workers=job.workers,
-    )
-    return replace(state, lvs=result, extracted=extracted)
+    drawn = measure_device(found, read_cut(job.folder, job.process), recovered, job.process)
+    built = Built(drawn, network, need(state.sizing), state.carriers, job.process)
+    reference = build_reference(need(state.device))
+    extracted = prove(built.network, reference, seed=job.seed, workers=job.workers, built=built.system)
+    return replace(state, lvs=result, extracted=extracted, built=built.record())
+
+
+def _keep_built(job: Job, state: State) -> None:
+    write_atomic(job.folder / "built.json", to_json(state.built))
 
 
 def _picture(job: Job, state: State, progress: Progress) -> State:
@@ -221,7 +226,7 @@ def _restore_parts(job: Job, state: State, files: tuple[str, ...]) -> State:
 
 def _restore_extraction(job: Job, state: State, files: tuple[str, ...]) -> State:
     lvs, extracted = load(job.folder, "extraction.json", tuple[LvsResult, Proof])
-    return replace(state, lvs=lvs, extracted=extracted)
+    return replace(state, lvs=lvs, extracted=extracted, built=load(job.folder, "built.json", BuiltDevice))
 
 
 def how_placed(state: State) -> str:
@@ -368,8 +373,8 @@ STEPS: tuple[Step, ...] = (
     ),
     Step(
         "extraction",
-        ("device", "network", "sizing", "files"),
-        ("lvs", "extracted"),
+        ("device", "network", "sizing", "carriers", "files"),
+        ("lvs", "extracted", "built"),
         _lvs,
         lambda s: (
             f"layout {'matches' if need(s.lvs).matched else 'DIFFERS FROM'} the network; as built "
@@ -377,7 +382,8 @@ STEPS: tuple[Step, ...] = (
         ),
         lambda s: to_json([s.lvs, s.extracted]),
         _restore_extraction,
-        ("seed",),
+        ("process", "seed"),
+        draw=_keep_built,
     ),
     Step(
         "views",

@@ -32,11 +32,13 @@ from mdlcad.proof.reference import build_reference
 from mdlcad.report.guide import GUIDE, guide
 from mdlcad.report.report import Report
 from mdlcad.routing.layout import Layout
-from mdlcad.signoff.extraction import extract
+from mdlcad.signoff.drawn import measure_device
+from mdlcad.signoff.extraction import Built, BuiltDevice
 from mdlcad.signoff.files import check_bodies
 from mdlcad.signoff.geometry import check_geometry
 from mdlcad.signoff.lvs import compare, recover
 from mdlcad.signoff.readback import read_step
+from mdlcad.signoff.sections import read_cut
 from mdlcad.synthesis.netlist import Netlist
 
 
@@ -115,9 +117,14 @@ def _verify(folder: Path, report: Report, workers: int, say: Callable[[str], Non
     lvs = compare(recovered, network)
     step("lvs", list(lvs.differences))
     if lvs.matched:
-        built = prove(extract(recovered, network, sizing), reference, seed=report.seed, workers=workers)
-        words = [str(item) for item in built.first_mismatches] or ["nothing was checked"]
-        step("extracted", [] if built.holds else words)
+        drawn = measure_device(found, read_cut(folder, process), recovered, process)
+        built = Built(drawn, network, sizing, carriers, process)
+        extracted = prove(built.network, reference, seed=report.seed, workers=workers, built=built.system)
+        words = [str(item) for item in extracted.first_mismatches] or ["nothing was checked"]
+        kept = load(folder, "built.json", BuiltDevice) == built.record()
+        step(
+            "extracted", ([] if extracted.holds else words) + ([] if kept else ["built.json: not what the files draw"])
+        )
     step("page", _check_page(folder))
     return broken
 

@@ -157,10 +157,10 @@ def _held_to_strain(
 class LargeLeaf:
     """A flexure at large displacements, its ends driven in y."""
 
-    def __init__(self, kind: LeafKind, shape: Meander, process: Process) -> None:
-        self.chain = chain_of(kind, shape, process)
+    def __init__(self, chain: Chain) -> None:
+        self.chain = chain
         beams = len(self.chain.frame.beams)
-        self._walls = [shape.wall] * self.chain.flexible + [0.0] * (beams - self.chain.flexible)
+        self._walls = [chain.wall] * self.chain.flexible + [0.0] * (beams - self.chain.flexible)
         self._frame = LargeFrame(self.chain.frame, [4] * self.chain.flexible + [1] * (beams - self.chain.flexible))
         self._pose = self._frame.rest()
 
@@ -184,7 +184,7 @@ class LargeLeaf:
 
 def large_strain(kind: LeafKind, shape: Meander, cases: tuple[tuple[float, float], ...], process: Process) -> float:
     """Largest strain of a flexure in any of ``cases`` (as ``size_leaf``); infinite if it has no equilibrium there."""
-    leaf = LargeLeaf(kind, shape, process)
+    leaf = LargeLeaf(chain_of(kind, shape, process))
     try:
         return max(leaf.strain(*case) for case in cases)
     except ArithmeticError:
@@ -197,7 +197,7 @@ def bias_offset(leaf: LeafSize, force: float, process: Process) -> float:
     Raises:
         ValueError: it cannot be bent so far.
     """
-    large, most = LargeLeaf(leaf.kind, leaf.shape, process), 2.0 * force / leaf.own
+    large, most = LargeLeaf(chain_of(leaf.kind, leaf.shape, process)), 2.0 * force / leaf.own
     try:
         bent = brentq(lambda d: large.force(float(d), 0.0) - force, *sorted((0.0, most)), xtol=1e-5)
     except (ArithmeticError, ValueError) as error:
@@ -217,35 +217,55 @@ def _slot(large: LargeLeaf, ends: tuple[float, float]) -> tuple[float, float]:
     return math.floor(min(drawn) * 100.0) / 100.0, math.ceil(max(drawn) * 100.0) / 100.0
 
 
-def _with_quartic(leaf: LeafSize, cases: tuple[tuple[float, float], ...], process: Process) -> LeafSize:
-    """``leaf`` with its higher terms from the large-displacement computation at its largest deflections."""
-    large = LargeLeaf(leaf.kind, leaf.shape, process)
-    across = leaf.coupling if leaf.kind is LeafKind.ROCKER else -leaf.coupling
+@dataclass(frozen=True, slots=True)
+class HigherTerms:
+    """What a coupler or rocker does beyond its stiffness: Q, C and B of ``LeafSize``, N/mm^3 and N/mm^2."""
+
+    quartic: float
+    common: float
+    skew: float
+
+
+def higher_terms(
+    large: LargeLeaf, kind: LeafKind, own: float, across: float, cases: tuple[tuple[float, float], ...]
+) -> HigherTerms:
+    """Terms that make the reduced model exact at the ends of ``cases``.
+
+    Raises:
+        ArithmeticError: there is no equilibrium there.
+    """
 
     def beyond(left: float, right: float) -> float:
-        return large.force(left, right) - (leaf.own * left + across * right)
+        return large.force(left, right) - (own * left + across * right)
 
+    quartic = common = skew = 0.0
+    for left, right in cases:
+        one, other = beyond(left, right), beyond(-left, -right)
+        odd, even = (one - other) / 2.0, (one + other) / 2.0
+        if left * right > 0.0:
+            common = odd / (left + right) ** 3
+        else:
+            quartic, skew = odd / (left - right) ** 3, even / (left - right) ** 2
+    return HigherTerms(quartic, common, skew if kind is LeafKind.ROCKER else 0.0)
+
+
+def _with_quartic(leaf: LeafSize, cases: tuple[tuple[float, float], ...], process: Process) -> LeafSize:
+    """``leaf`` with its higher terms from the large-displacement computation at its largest deflections."""
+    large = LargeLeaf(chain_of(leaf.kind, leaf.shape, process))
     try:
         if leaf.kind is LeafKind.BIAS:
             # of force = own d + skew d^2 + quartic d^3, exact at both ends of the range
             first, second = cases[0][0], cases[1][0]
             rows = [[first**2, first**3], [second**2, second**3]]
-            skew, quartic = np.linalg.solve(rows, [beyond(first, 0.0), beyond(second, 0.0)])
+            rest = [large.force(bent, 0.0) - leaf.own * bent for bent in (first, second)]
+            skew, quartic = np.linalg.solve(rows, rest)
             slot = _slot(large, (min(first, second, 0.0), max(first, second, 0.0)))
             return replace(leaf, quartic=trim(float(quartic)), skew=trim(float(skew)), slot=slot)
-        quartic = common = skew = 0.0
-        for left, right in cases:
-            one, other = beyond(left, right), beyond(-left, -right)
-            odd, even = (one - other) / 2.0, (one + other) / 2.0
-            if left * right > 0.0:
-                common = odd / (left + right) ** 3
-            else:
-                quartic, skew = odd / (left - right) ** 3, even / (left - right) ** 2
+        across = leaf.coupling if leaf.kind is LeafKind.ROCKER else -leaf.coupling
+        terms = higher_terms(large, leaf.kind, leaf.own, across, cases)
     except ArithmeticError as error:
         raise ValueError(f"a {leaf.kind.value} that is soft enough finds no equilibrium at its farthest") from error
-    if leaf.kind is LeafKind.COUPLER:
-        skew = 0.0
-    return replace(leaf, quartic=trim(quartic), common=trim(common), skew=trim(skew))
+    return replace(leaf, quartic=trim(terms.quartic), common=trim(terms.common), skew=trim(terms.skew))
 
 
 def _stiffness(kind: LeafKind, wall: float, legs: int, amplitude: float, process: Process) -> Callable[[float], float]:

@@ -65,11 +65,16 @@ class Plate:
 
 @dataclass(frozen=True, slots=True)
 class Stack:
-    """Plates bottom to top, the shim gap between them (mm) and the material of pins and posts."""
+    """Plates bottom to top, the shim gap between them (mm) and the material of pins and posts.
+
+    ``friction`` is the coefficient of dry friction of plates, pins and posts on each other; files written before it was
+    known have none, and are read with a value for dry plastics.
+    """
 
     z_gap: float
     pin_material: str
     plates: tuple[Plate, ...]
+    friction: float = 0.3
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,8 +12,9 @@ the right beams' force.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
-from scipy.optimize import brentq
 
 from mdlcad.mechanics.frame import TURN, Array, Frame, X, Y, dof
 from mdlcad.mechanics.leaves import LeafKind, LeafSize
@@ -29,29 +30,66 @@ def block_stiffness(process: Process, series: SeriesSpring) -> float:
     return float(Frame(made.nodes, made.beams).condense([dof(0, Y)], [*pin, dof(0, TURN)])[0, 0])
 
 
+_ROUNDS = 200
+
+
+@dataclass(frozen=True, slots=True)
+class UnitNumbers:
+    """What the law of a unit needs: mm, N.
+
+    Attributes:
+        beams: a side; span: of each; bending: E I of each, N mm^2.
+        axial: stiffness in x of beams and series spring in a row, N/mm; across: of the end block in y, N/mm.
+    """
+
+    beams: int
+    span: float
+    bending: float
+    axial: float
+    across: float
+
+
 def unit_force(process: Process, law: UnitLaw, series: SeriesSpring, clock: float, displacement: Array) -> Array:
     """Force in N that holds a shuttle at each of ``displacement`` (mm), its clock pushed in by ``clock`` mm."""
-    unit, across = process.unit, block_stiffness(process, series)
-    bending = law.beam_stiffness * unit.span**3 / (24.0 * unit.beams)  # E I of one beam
-    axial = 1.0 / (1.0 / law.beams_axial + 1.0 / series.stiffness)
+    unit = process.unit
+    numbers = UnitNumbers(
+        unit.beams,
+        unit.span,
+        law.beam_stiffness * unit.span**3 / (24.0 * unit.beams),
+        1.0 / (1.0 / law.beams_axial + 1.0 / series.stiffness),
+        block_stiffness(process, series),
+    )
+    return force_of(numbers, clock, displacement)
 
-    def side(push: float) -> float:
-        p = push / unit.beams * unit.span**2 / bending
-        return unit.beams * bending / unit.span**3 * (12.0 - 1.2 * p - p * p / 700.0)
 
-    def force(a: float) -> float:
-        def excess(push: float) -> float:
-            p = push / unit.beams * unit.span**2 / bending
-            right = a / (1.0 + side(push) / across)  # the right beams' part of it; the end block takes the rest
-            shortening = (a**2 + right**2) / (2.0 * unit.span) * (1.2 + p / 350.0)
-            return push - axial * (clock - shortening)
+def force_of(numbers: UnitNumbers, clock: float, displacement: Array) -> Array:
+    """``unit_force`` of a unit with these numbers.
 
-        reach = axial * (abs(clock) + 2.0 * a**2 / unit.span) + 1.0
-        push = float(brentq(excess, -2.0 * reach, 2.0 * reach, xtol=1e-9))
-        stiffness = side(push)
-        return (stiffness + stiffness / (1.0 + stiffness / across)) * a
+    The push along the beams depends on itself through the terms of second order only, so it is found by putting it in.
 
-    return np.array([force(float(a)) for a in displacement])
+    Raises:
+        ArithmeticError: it is not found so.
+    """
+    scale = numbers.span**2 / (numbers.beams * numbers.bending)
+
+    def side(push: Array) -> Array:
+        p = push * scale
+        return np.asarray(numbers.beams * numbers.bending / numbers.span**3 * (12.0 - 1.2 * p - p * p / 700.0))
+
+    push = np.full(displacement.shape, numbers.axial * clock)
+    for _ in range(_ROUNDS):
+        before = push
+        right = displacement / (
+            1.0 + side(push) / numbers.across
+        )  # the right beams' part; the end block takes the rest
+        shortening = (displacement**2 + right**2) / (2.0 * numbers.span) * (1.2 + push * scale / 350.0)
+        push = numbers.axial * (clock - shortening)
+        if np.max(np.abs(push - before), initial=0.0) < 1e-10 * (1.0 + numbers.axial * abs(clock)):
+            break
+    else:
+        raise ArithmeticError("the push of a unit's beams is not found: its end block is too soft")
+    stiffness = side(push)
+    return (stiffness + stiffness / (1.0 + stiffness / numbers.across)) * displacement
 
 
 def leaf_force(leaf: LeafSize, left: Array, right: Array) -> Array:

@@ -116,46 +116,83 @@ class SpringFrame:
     pin: int
 
 
-def spring_frame(process: Process, wall: float, height: float, clear: float) -> SpringFrame:
-    """The folded spring as beams: first the strained ones (``widths``), then those taken as rigid."""
+@dataclass(frozen=True, slots=True)
+class SpringPlan:
+    """Centre lines and widths of a folded spring, mm, from the middle of the end block.
+
+    Attributes:
+        near, far: x of the leaves of a bank and their walls, (x, wall above, wall below) each, outwards.
+        stem, truss: widths in y of the stems and of the trusses; height: of the trusses' outer edges.
+    """
+
+    near: tuple[tuple[float, float, float], ...]
+    far: tuple[tuple[float, float, float], ...]
+    stem: float
+    truss: float
+    height: float
+
+
+def spring_plan(process: Process, wall: float, height: float, clear: float) -> SpringPlan:
+    """The plan that sizing draws: all leaves alike."""
     unit, gap = process.unit, process.machine.min_gap
-    plate = process.plates(PlateRole.UNIT)[0]
-    material = process.material(plate)
-    sheet = Sheet(material.modulus, plate.thickness, material.strain_limit)
-    truss_y, face, root = height - unit.series_arm / 2.0, height - unit.series_arm, unit.series_arm / 2.0
     first = unit.block_width / 2.0 + clear - gap / 2.0 + wall / 2.0
     near = [first + i * (wall + gap) for i in range(unit.series_leaves)]
     far = [near[-1] + wall + clear + i * (wall + gap) for i in range(unit.series_leaves)]
+    banks = [tuple((x, wall, wall) for x in bank) for bank in (near, far)]
+    return SpringPlan(banks[0], banks[1], unit.series_arm, unit.series_arm, height)
+
+
+def spring_frame(process: Process, wall: float, height: float, clear: float) -> SpringFrame:
+    """The folded spring as sizing draws it."""
+    plate = process.plates(PlateRole.UNIT)[0]
+    material = process.material(plate)
+    sheet = Sheet(material.modulus, plate.thickness, material.strain_limit)
+    return frame_of(spring_plan(process, wall, height, clear), sheet)
+
+
+def frame_of(plan: SpringPlan, sheet: Sheet) -> SpringFrame:
+    """A folded spring as beams: first the strained ones (``widths``), then those taken as rigid."""
+    truss_y, face, root = plan.height - plan.truss / 2.0, plan.height - plan.truss, plan.stem / 2.0
     nodes = [(0.0, 0.0)]
     parts: list[tuple[Beam, float]] = []  # beams that may be strained, with their width
     stiff: list[Beam] = []
     stem = [0]
     tops: dict[float, list[int]] = {1.0: [], -1.0: []}
-    for x in near + far:
+    for x, *walls in plan.near + plan.far:
         centre = len(nodes)
         nodes.append((x, 0.0))
-        if x != far[0]:
-            parts.append((sheet.beam(stem[-1], centre, unit.series_arm), unit.series_arm))
+        if x != plan.far[0][0]:
+            parts.append((sheet.beam(stem[-1], centre, plan.stem), plan.stem))
         stem.append(centre)
-        for side, truss in tops.items():
+        for (side, truss), wall in zip(tops.items(), walls, strict=True):
             foot = len(nodes)
             nodes += [(x, side * root), (x, side * face), (x, side * truss_y)]
             stiff += [sheet.beam(centre, foot, wall, RIGID), sheet.beam(foot + 1, foot + 2, wall, RIGID)]
             parts.append((sheet.beam(foot, foot + 1, wall), wall))
             if truss:
-                parts.append((sheet.beam(truss[-1], foot + 2, unit.series_arm), unit.series_arm))
+                parts.append((sheet.beam(truss[-1], foot + 2, plan.truss), plan.truss))
             truss.append(foot + 2)
     return SpringFrame(nodes, [beam for beam, _ in parts] + stiff, [width for _, width in parts], stem[-1])
 
 
-def _solve(process: Process, law: UnitLaw, wall: float, height: float, clear: float) -> tuple[float, float, float]:
-    """Stiffness (N/mm), strain per mm and turning stiffness of the end block (N mm/rad) of the spring's frame.
+@dataclass(frozen=True, slots=True)
+class SpringStiffness:
+    """Of the end block: ``push`` in x, N/mm, and ``turn``, N mm/rad, as it is held by the beams; ``across`` in y, N/mm,
+    of the spring alone and not turning. ``strain``: largest, per mm of push."""
 
-    The end block is free to turn and to move in y against the beams it ends.
+    push: float
+    turn: float
+    across: float
+    strain: float
+
+
+def spring_stiffness(made: SpringFrame, beams_y: float, beams_turn: float) -> SpringStiffness:
+    """What a folded spring does; its end block is free to turn and to move in y against the beams it ends.
+
+    Args:
+        beams_y, beams_turn: stiffness of those beams, N/mm and N mm/rad (the shuttle at rest).
     """
-    made = spring_frame(process, wall, height, clear)
-    # what the pair of beams holds the end block by (the shuttle at rest)
-    springs = [Spring(dof(0, Y), law.beam_stiffness / 2.0), Spring(dof(0, TURN), law.shuttle_turn / 2.0)]
+    springs = [Spring(dof(0, Y), beams_y), Spring(dof(0, TURN), beams_turn)]
     frame = Frame(made.nodes, made.beams, springs)
     pin = [dof(made.pin, i) for i in (X, Y, TURN)]
     solution = frame.solve(dict.fromkeys(pin, 0.0) | {dof(0, X): 1.0})
@@ -164,4 +201,12 @@ def _solve(process: Process, law: UnitLaw, wall: float, height: float, clear: fl
         moment = max(abs(value) for value in frame.end_moments(beam, solution))
         strain = max(strain, moment * width / (2.0 * beam.bending))
     turning = float(frame.condense([dof(0, TURN)], pin)[0, 0])
-    return float(solution.reactions[dof(0, X)]), strain, turning
+    across = float(Frame(made.nodes, made.beams).condense([dof(0, Y)], [*pin, dof(0, TURN)])[0, 0])
+    return SpringStiffness(float(solution.reactions[dof(0, X)]), turning, across, strain)
+
+
+def _solve(process: Process, law: UnitLaw, wall: float, height: float, clear: float) -> tuple[float, float, float]:
+    """Stiffness (N/mm), strain per mm and turning stiffness of the end block (N mm/rad) of the spring's frame."""
+    made = spring_frame(process, wall, height, clear)
+    found = spring_stiffness(made, law.beam_stiffness / 2.0, law.shuttle_turn / 2.0)
+    return found.push, found.strain, found.turn

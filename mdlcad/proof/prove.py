@@ -18,7 +18,7 @@ from mdlcad.proof.itinerary import Itinerary, make_itinerary
 from mdlcad.proof.outcome import Mismatch, Proof
 from mdlcad.proof.timing import NoTick, find_timing
 from mdlcad.simulation.run import steps_for
-from mdlcad.simulation.system import system_of
+from mdlcad.simulation.system import System, system_of
 
 SENSOR_FORCE = 1.0
 
@@ -34,6 +34,7 @@ def prove(
     workers: int = 2,
     sensor_force: float = SENSOR_FORCE,
     steps_per_period: int | None = None,
+    built: System | None = None,
 ) -> Proof:
     """Check ``network`` against ``reference``; see ``Proof.holds`` for the verdict.
 
@@ -41,12 +42,13 @@ def prove(
     of state and inputs) are checked exhaustively; of others, every state that was found is visited and at least
     ``decisions`` decisions are simulated. A sensor bit b drives its mass with the constant force (2 b - 1)
     ``sensor_force``. Without ``steps_per_period`` the step is fine enough for the network's masses. The result
-    depends on the arguments alone, not on ``workers``.
+    depends on the arguments alone, not on ``workers``. ``built`` is simulated instead of the network's own system: the
+    same masses and springs with the numbers of a device.
 
     Raises:
         UsageError: the bits of the network are not those of the reference.
     """
-    system = system_of(network)
+    system = built if built is not None else system_of(network)
     check_names(network, reference)
     steps_per_period = steps_per_period or steps_for(system)
     itinerary = make_itinerary(reference, decisions, seed)

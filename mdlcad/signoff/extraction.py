@@ -1,46 +1,361 @@
-"""The mass-spring network that the geometry is: connections and signs from the file, stiffnesses from the parts.
+"""The mass-spring network that the geometry is, every number computed from the drawn outlines.
 
-Which carrier drives which shuttle, and whether through a rocker, is taken from bodies that touch in the STEP file. What
-a coupler of that shape weighs (c, s, the bias of a leaf, the preload of a unit) is what the sizing computed for the
-shape that was drawn; it is not yet measured on the drawn outline.
+Measured: walls, spans, heights and legs of every flexure, how far series springs are pushed together, where posts stand
+(``measure``). Through the reduced models of ``mechanics`` they become stiffnesses, self terms, biases and what is
+beyond them. A coupler is in a row with its carrier. Taken as given: moduli (process), the clock's stroke (sizing).
+
+Errors of fabrication go the same way: the numbers are tabulated over a wall that is thinner or thicker than drawn.
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
-from mdlcad.mechanics import Sizing
+import numpy as np
+from numpy.typing import NDArray
+
+from mdlcad.errors import SignoffError
+from mdlcad.mechanics import Process, Sizing
+from mdlcad.mechanics.flexure import signal_matrix
+from mdlcad.mechanics.leaves import LeafKind, trim
+from mdlcad.mechanics.reduced import UnitNumbers
+from mdlcad.mechanics.strains import reach_at
 from mdlcad.network.model import Coupling, Network
-from mdlcad.signoff.lvs import Recovered
+from mdlcad.parts.stiffness import CarrierStiffness
+from mdlcad.signoff.drawn import BiasDrawn, CouplerDrawn, Drawn
+from mdlcad.signoff.measure import UnitSeen, chain_of_leaf, thickened
+from mdlcad.signoff.numbers import (
+    LeafLaw,
+    Scale,
+    SpringNumbers,
+    bias_numbers,
+    fit_unit,
+    leaf_law,
+    spring_numbers,
+    unit_numbers,
+)
+from mdlcad.simulation.devices import Devices
+from mdlcad.simulation.system import System, system_of
+
+Floats = NDArray[np.float64]
 
 
-def extract(recovered: Recovered, network: Network, sizing: Sizing) -> Network:
-    """``network`` as built: couplings that were found in the geometry with the numbers of their parts.
+@dataclass(frozen=True, slots=True, eq=False)
+class Errors:
+    """Errors of L devices, mm; of each kind float[items, L].
 
-    A coupling that is not in the geometry is missing here too; one that the network does not have is taken with the
-    numbers of a part of its sign.
+    Attributes:
+        beams, leaves: thickness of the walls of every unit's beams and series spring; pins: of its preload.
+        couplers, biases: thickness of the walls of every coupler (or rocker) and bias leaf; posts: of their offset.
     """
-    parts = {item.coupling: item for item in sizing.couplers}
-    biases = {item.mass: item for item in sizing.biases}
-    units = {item.mass: item for item in sizing.units}
-    biased = set(recovered.biased)
-    masses = []
-    for mass in network.masses:
-        has_leaf = mass.name in biased and mass.name in biases
-        own = biases[mass.name].self_stiffness if has_leaf else 0.0
-        masses.append(
-            replace(
-                mass,
-                compensation=units[mass.name].compensation + own,
-                bias=biases[mass.name].bias if has_leaf else 0.0,
+
+    beams: Floats
+    leaves: Floats
+    pins: Floats
+    couplers: Floats
+    biases: Floats
+    posts: Floats
+
+
+@dataclass(frozen=True, slots=True)
+class MassBuilt:
+    """What a mass of the device has beyond ``network.model``, in units of the network.
+
+    Attributes:
+        quartic, cubic: lambda and beta of ``simulation.devices``; friction: bound of dry friction, of F0.
+        preload_mm: by how much its series spring is pushed together.
+    """
+
+    mass: str
+    quartic: float
+    cubic: float
+    friction: float
+    preload_mm: float
+
+
+@dataclass(frozen=True, slots=True)
+class CouplerBuilt:
+    """A coupler or rocker of the device: its numbers, and the stiffness of its carrier, N/mm (0: it has none)."""
+
+    coupling: str
+    carrier: float
+    numbers: SpringNumbers
+
+
+@dataclass(frozen=True, slots=True)
+class BuiltDevice:
+    """The artefact built.json: what was measured, and the network that it is.
+
+    Attributes:
+        network: k0 holds the self terms of all springs at a mass, so that couplings have none.
+    """
+
+    drawn: Drawn
+    network: Network
+    masses: tuple[MassBuilt, ...]
+    couplers: tuple[CouplerBuilt, ...]
+
+
+class Built:
+    """A device as drawn, and its like with errors.
+
+    Attributes:
+        network: masses of the network, couplings as found, with the numbers of the device as drawn.
+        system: that, with all that the network's model leaves out, ready to be simulated.
+        friction: by mass, bound of dry friction in units of F0.
+    """
+
+    def __init__(
+        self,
+        drawn: Drawn,
+        network: Network,
+        sizing: Sizing,
+        carriers: Sequence[CarrierStiffness],
+        process: Process,
+        grid: Sequence[float] = (0.0,),
+    ) -> None:
+        """Evaluate ``drawn``; ``grid``: errors of walls (mm) at which it is tabulated for ``devices``.
+
+        Raises:
+            SignoffError: the geometry lacks a unit, or a flexure finds no equilibrium at its farthest.
+        """
+        self._grid = np.array(grid)
+        self._scale = Scale(sizing.law.stiffness_unit, process.unit.throw_unit)
+        self._throw = sizing.rules.throw
+        self._swing = sizing.law.stroke_per_k * max(abs(mass.k1) for mass in network.masses)
+        peaks = {unit.mass: unit.amplitude / process.unit.throw_unit for unit in sizing.units}
+        self._reaches = [process.unit.throw_unit * max(reach_at(network, peaks, p).values()) for p in (0.0, 1.0, 2.0)]
+        self._drawn = drawn
+        self._names = [mass.name for mass in network.masses]
+        missing = sorted(set(self._names) - set(drawn.units))
+        if missing:
+            raise SignoffError(f"the geometry has no units for {', '.join(missing)}")
+        self._stiff = {item.coupling: item.stiffness for item in carriers}
+        try:
+            self._units = self._unit_tables()
+            self._couplers = self._coupler_tables()
+            self._biases = self._bias_tables()
+        except ArithmeticError as error:
+            raise SignoffError(f"a flexure as drawn cannot be bent as far as it must: {error}") from error
+        self.friction = self._friction(process)
+        self._shape(network)
+
+    def record(self) -> BuiltDevice:
+        """The device as drawn, to be kept."""
+        devices, none = self.system.devices, np.zeros(1)
+        if devices is None:
+            raise AssertionError("the system of a device has the device's numbers")
+        masses = tuple(
+            MassBuilt(
+                name,
+                trim(float(devices.quartic[at, 0])),
+                trim(float(devices.cubic[at, 0])),
+                trim(self.friction[name]),
+                trim(self._drawn.units[name].preload),
             )
+            for at, name in enumerate(self.system.names)
         )
-    couplings = []
-    for found in recovered.connections:
-        name = f"{found.source}->{found.target}"
-        part = parts.get(name) or next(
-            (item for item in sizing.couplers if (item.strength < 0) == found.negative), sizing.couplers[0]
+        couplers = tuple(
+            CouplerBuilt(
+                item.name,
+                self._stiff.get(item.name, 0.0),
+                SpringNumbers(*(trim(float(v)) for v in _at(table, none)[:, 0])),
+            )
+            for item, table in zip(self._drawn.couplers, self._couplers, strict=True)
         )
-        sign = -1.0 if found.negative else 1.0
-        couplings.append(Coupling(found.source, found.target, sign * abs(part.strength), part.self_stiffness))
-    return replace(network, masses=tuple(masses), couplings=tuple(couplings))
+        return BuiltDevice(self._drawn, self.network, masses, couplers)
+
+    def errors(self, lanes: int) -> Errors:
+        """No errors at all, in ``lanes`` devices."""
+        units, couplers, biases = len(self._names), len(self._drawn.couplers), len(self._drawn.biases)
+        counts = (units, units, units, couplers, biases, biases)
+        return Errors(*(np.zeros((count, lanes)) for count in counts))
+
+    def with_errors(self, errors: Errors) -> System:
+        """Devices like this one, each with its errors."""
+        return replace(self.system, devices=self._devices(errors))
+
+    # ---- tables: numbers over the grid of errors, as polynomials through its points
+
+    def _polynomials(self, values: Sequence[Sequence[float] | Floats]) -> Floats:
+        """float[degree + 1, numbers]: coefficients, highest power first."""
+        rows = np.array(values, dtype=np.float64)
+        return np.asarray(np.linalg.solve(np.vander(self._grid), rows), dtype=np.float64)
+
+    def _unit_tables(self) -> dict[str, tuple[Floats, Floats, Floats]]:
+        """By mass, (base, swing, quartic) over errors of beams, of leaves and of the preload."""
+        known: dict[object, tuple[Floats, Floats, Floats]] = {}
+        laws: dict[object, UnitNumbers] = {}
+        tables = {}
+
+        def fit(seen: UnitSeen, alike: object, beams: float, leaves: float, preload: float) -> list[float]:
+            key = (alike, beams, leaves)
+            if key not in laws:
+                laws[key] = unit_numbers(seen, self._drawn.unit_sheet, beams, leaves)
+            found = fit_unit(laws[key], preload, self._swing, self._reaches, self._scale)
+            return [found.base, found.swing, found.quartic]
+
+        for name in self._names:
+            seen = self._drawn.units[name]
+            alike = _rounded((seen.left, seen.right, seen.plan))
+            key = (alike, round(seen.preload, 3))
+            if key not in known:
+                known[key] = (
+                    self._polynomials([fit(seen, alike, error, 0.0, seen.preload) for error in self._grid]),
+                    self._polynomials([fit(seen, alike, 0.0, error, seen.preload) for error in self._grid]),
+                    self._polynomials([fit(seen, alike, 0.0, 0.0, seen.preload + error) for error in self._grid]),
+                )
+            tables[name] = known[key]
+        return tables
+
+    def _coupler_tables(self) -> list[Floats]:
+        """One for each coupler found: the fields of ``SpringNumbers`` over errors of its walls."""
+        known: dict[object, list[LeafLaw]] = {}
+        tables = []
+        for item in self._drawn.couplers:
+            key = (item.kind, *_leaf_key(item))
+            if key not in known:
+                nominal = leaf_law(chain_of_leaf(item.leaf, item.sheet), item.kind, self._throw)
+                known[key] = [_scaled(nominal, factor) for factor in self._factors(item)]
+            # a coupling that is not the network's has no carrier that was ever computed: take that as rigid
+            carrier = min(self._stiff.get(item.name, np.inf), 1e9)
+            rows = []
+            for law in known[key]:
+                found = spring_numbers(law, carrier, self._scale)
+                rows.append([getattr(found, field) for field in found.__dataclass_fields__])
+            tables.append(self._polynomials(rows))
+        return tables
+
+    def _factors(self, item: CouplerDrawn | BiasDrawn) -> list[float]:
+        """Over the grid of errors, the flexure's stiffness over that of the drawn one.
+
+        It bends as it did, at other forces: what is of higher order goes with the same factor.
+        """
+        chains = [chain_of_leaf(thickened(item.leaf, error), item.sheet) for error in (0.0, *self._grid)]
+        nominal, *others = [float(signal_matrix(chain)[0, 0]) for chain in chains]
+        return [other / nominal for other in others]
+
+    def _bias_tables(self) -> list[Floats]:
+        known: dict[object, Floats] = {}
+        tables = []
+        for item in self._drawn.biases:
+            key = (*_leaf_key(item), round(item.offset, 3))
+            if key not in known:
+                chain = chain_of_leaf(item.leaf, item.sheet)
+                found = bias_numbers(chain, item.offset, self._throw, self._scale)
+                nominal = np.array([found.bias, found.stiffness, found.cubic, found.quartic])
+                known[key] = self._polynomials([nominal * factor for factor in self._factors(item)])
+            tables.append(known[key])
+        return tables
+
+    # ---- assembly
+
+    def _shape(self, network: Network) -> None:
+        """The network as found: its masses, and the couplings of the geometry."""
+        none = self.errors(1)
+        couplings, self_terms = [], {mass.name: 0.0 for mass in network.masses}
+        for item, table in zip(self._drawn.couplers, self._couplers, strict=True):
+            c, source, target, *_ = _at(table, none.couplers[0][:1])[:, 0]
+            couplings.append(Coupling(item.source, item.target, trim(float(c)), 0.0))
+            self_terms[item.source] += float(source)
+            self_terms[item.target] += float(target)
+        masses = []
+        leaves = {item.mass: table for item, table in zip(self._drawn.biases, self._biases, strict=True)}
+        for mass in network.masses:
+            q, stiffness = _at(leaves[mass.name], np.zeros(1))[:2, 0] if mass.name in leaves else (0.0, 0.0)
+            base, swing, _ = _at(self._units[mass.name][0], np.zeros(1))[:, 0]
+            k0 = float(base + self_terms[mass.name] + stiffness)
+            masses.append(replace(mass, k0=trim(k0), k1=trim(float(swing)), compensation=0.0, bias=trim(float(q))))
+        self.network = replace(network, masses=tuple(masses), couplings=tuple(couplings))
+        plain = system_of(self.network)
+        # in the order in which system_of lists them
+        rows: list[list[int]] = [[] for _ in plain.names]
+        for index, item in enumerate(self._drawn.couplers):
+            rows[plain.index(item.source)].append(index)
+            rows[plain.index(item.target)].append(index)
+        self._entries = [index for row in rows for index in row]
+        self._structure = plain
+        self.system = replace(plain, devices=self._devices(none))
+
+    def _devices(self, errors: Errors) -> Devices:
+        place = {name: index for index, name in enumerate(self._structure.names)}
+        lanes = errors.beams.shape[1]
+        masses = np.zeros((6, len(place), lanes))  # base, swing, bias, quartic, cubic, friction
+        for index, name in enumerate(self._names):
+            beams, leaves, pins = self._units[name]
+            drawn = _at(beams, np.zeros(1))
+            numbers = _at(beams, errors.beams[index]) - drawn
+            numbers = numbers + _at(leaves, errors.leaves[index]) + _at(pins, errors.pins[index]) - drawn
+            at = place[name]
+            masses[0, at], masses[1, at], masses[3, at] = numbers
+            masses[5, at] = self.friction[name]
+        entries = np.zeros((4, len(self._drawn.couplers), lanes))  # c, Q, C, B of each coupler
+        for index, (item, table) in enumerate(zip(self._drawn.couplers, self._couplers, strict=True)):
+            c, source, target, *higher = _at(table, errors.couplers[index])
+            masses[0, place[item.source]] += source
+            masses[0, place[item.target]] += target
+            entries[:, index] = [c, *higher]
+        for index, (leaf, table) in enumerate(zip(self._drawn.biases, self._biases, strict=True)):
+            q, stiffness, cubic, quartic = _at(table, errors.biases[index])
+            at = place[leaf.mass]
+            masses[2, at] += q - stiffness * errors.posts[index] / self._scale.length
+            masses[0, at] += stiffness
+            masses[4, at] += cubic
+            masses[3, at] += quartic
+        springs = entries[:, self._entries]
+        base, swing, bias, quartic, cubic, friction = masses
+        return Devices(base, swing, bias, quartic, cubic, friction, *springs)
+
+    def _friction(self, process: Process) -> dict[str, float]:
+        """Bound of dry friction (Coulomb), by mass, in units of F0.
+
+        The weight of what moves with the shuttle; for a rocker the force on its post at full throw, at the post's
+        radius and the eye's turn by 3/4 of a throw over half its length (docs/mechanics.md); for a bias leaf its
+        pull at the end of its range times the share of its motion by which the eye slides.
+        """
+        mu, throw = process.stack.friction, self._throw
+        force = {name: mu * self._drawn.weights[name] for name in self._names}
+        none = np.zeros(1)
+        for coupler, table in zip(self._drawn.couplers, self._couplers, strict=True):
+            if coupler.kind is LeafKind.ROCKER and coupler.leaf.post:
+                c, source, target, *_ = _at(table, none)[:, 0]
+                pull = (max(source, target) + abs(c)) * self._scale.stiffness * throw
+                drag = mu * pull * self._drawn.post_radius * 0.75 / coupler.leaf.post
+                force[coupler.source] += drag
+                force[coupler.target] += drag
+        for bias, table in zip(self._drawn.biases, self._biases, strict=True):
+            q, stiffness, *_ = _at(table, none)[:, 0]
+            pull = abs(q) * self._scale.force + stiffness * self._scale.stiffness * throw
+            force[bias.mass] += mu * pull * bias.leaf.slot / throw
+        return {name: value / self._scale.force for name, value in force.items()}
+
+
+def _at(polynomials: Floats, errors: Floats) -> Floats:
+    """float[numbers, L] of polynomials float[degree + 1, numbers] at ``errors`` float[L]."""
+    value = np.zeros((polynomials.shape[1], len(errors)))
+    for row in polynomials:
+        value = value * errors + row[:, None]
+    return value
+
+
+def _scaled(law: LeafLaw, factor: float) -> LeafLaw:
+    return LeafLaw(*(factor * getattr(law, field) for field in law.__dataclass_fields__))
+
+
+def _leaf_key(item: CouplerDrawn | BiasDrawn) -> tuple[object, ...]:
+    return _rounded(item.leaf), item.sheet
+
+
+def _rounded(value: object) -> object:
+    """Nested numbers rounded to a micrometre: dimensions nearer than that are one, drawn on a grid of a tenth."""
+    if isinstance(value, float):
+        return round(value, 3) + 0.0
+    if isinstance(value, tuple):
+        return tuple(_rounded(item) for item in value)
+    fields = getattr(value, "__dataclass_fields__", None)
+    # where a part stands is not what it is
+    return tuple(_rounded(getattr(value, name)) for name in fields if name not in _PLACES) if fields else value
+
+
+_PLACES = ("face", "row", "out")

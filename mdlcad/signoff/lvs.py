@@ -23,11 +23,26 @@ CONTACT_MM = 2e-3
 
 @dataclass(frozen=True, slots=True)
 class Connection:
-    """A coupling found in the geometry, from a unit's carrier to another unit's shuttle; negative if it is a rocker."""
+    """A coupling found in the geometry, from a unit's carrier to another unit's shuttle; negative if it is a rocker.
+
+    Attributes:
+        body: name of the flexure that it is; post: name of the post that it turns on, if any.
+    """
 
     source: str
     target: str
     negative: bool
+    body: str = ""
+    post: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class BiasFound:
+    """A bias leaf found in the geometry: the unit whose shuttle it pulls, its name and that of its post."""
+
+    mass: str
+    body: str
+    post: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,12 +58,22 @@ class LvsResult:
 
 @dataclass(frozen=True, slots=True)
 class Recovered:
-    """What the geometry is: units by name, connections, biased units, and what could not be understood."""
+    """What the geometry is: units by name, connections, bias leaves, and what could not be understood.
+
+    Attributes:
+        carriers: by unit, the names of the rigid bodies that move with its shuttle.
+    """
 
     units: tuple[str, ...]
     connections: tuple[Connection, ...]
-    biased: tuple[str, ...]
+    biases: tuple[BiasFound, ...]
     problems: tuple[str, ...]
+    carriers: dict[str, tuple[str, ...]]
+
+    @property
+    def biased(self) -> tuple[str, ...]:
+        """The units that a bias leaf pulls, one entry a leaf."""
+        return tuple(item.mass for item in self.biases)
 
 
 def contacts(bodies: Sequence[ReadBody]) -> list[tuple[int, int]]:
@@ -100,11 +125,15 @@ def recover(bodies: Sequence[ReadBody]) -> Recovered:
     for number in sorted(set(group.values()) - set(shuttle) - clock_groups):
         names = sorted(bodies[index].name for index, part in group.items() if part == number)
         problems.append(f"loose: {names[0]} and {len(names) - 1} more bodies are pinned to no shuttle")
-    connections, biased = _flexures(bodies, pairs, kinds, group, shuttle, problems)
+    connections, biases = _flexures(bodies, pairs, kinds, group, shuttle, problems)
     units = tuple(
         sorted(body.name.removeprefix("unit.") for body, kind in zip(bodies, kinds, strict=True) if kind == "unit")
     )
-    return Recovered(units, tuple(connections), tuple(sorted(biased)), tuple(problems))
+    carried = {
+        mass: tuple(sorted(bodies[index].name for index, part in group.items() if part == number))
+        for number, mass in shuttle.items()
+    }
+    return Recovered(units, tuple(connections), tuple(biases), tuple(problems), carried)
 
 
 def _flexures(
@@ -114,7 +143,7 @@ def _flexures(
     group: dict[int, int],
     shuttle: dict[int, str],
     problems: list[str],
-) -> tuple[list[Connection], list[str]]:
+) -> tuple[list[Connection], list[BiasFound]]:
     touching: dict[int, list[int]] = {index: [] for index, kind in enumerate(kinds) if kind in _FLEXURES}
     for a, b in pairs:
         if a in touching:
@@ -122,22 +151,24 @@ def _flexures(
         if b in touching:
             touching[b].append(a)
     posts_at = [index for index, kind in enumerate(kinds) if kind == "post"]
-    connections, biased = [], []
+    connections, biases = [], []
     for index, others in touching.items():
         bars = {shuttle.get(group[o], "?") for o in others if kinds[o] in ("rung", "trunk", "tab")}
         hubs = {shuttle.get(group[o], "?") for o in others if kinds[o] == "pin"}
-        posts = sum(_surrounds(bodies[index], bodies[post]) for post in posts_at)
+        held = [bodies[post].name for post in posts_at if _surrounds(bodies[index], bodies[post])]
+        posts = len(held)
         name = bodies[index].name
         if len(hubs) != 1 or len(bars) > 1 or (not bars and posts != 1) or posts > 1:
             problems.append(
                 f"open: {name} touches carriers of {sorted(bars)}, shuttles of {sorted(hubs)}, {posts} posts"
             )
         elif bars:
-            connections.append(Connection(bars.pop(), hubs.pop(), negative=posts == 1))
+            connections.append(Connection(bars.pop(), hubs.pop(), posts == 1, name, held[0] if held else None))
         else:
-            biased.append(hubs.pop())
+            biases.append(BiasFound(hubs.pop(), name, held[0]))
     connections.sort(key=lambda item: (item.source, item.target))
-    return connections, biased
+    biases.sort(key=lambda item: item.mass)
+    return connections, biases
 
 
 def _surrounds(flexure: ReadBody, post: ReadBody) -> bool:

@@ -8,10 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mdlcad.simulation.devices import advance_devices
 from mdlcad.simulation.kernel_lanes import BLOCK, advance_block
 from mdlcad.simulation.kernel_single import advance_one
 from mdlcad.simulation.plan import plan_of, turn_table
-from mdlcad.simulation.system import Floats, Ints, System
+from mdlcad.simulation.system import Floats, Ints, System, wave_table
 
 STEPS_PER_PERIOD = 400
 
@@ -105,13 +106,13 @@ def simulate(
     The result of a lane does not depend on the other lanes, nor on ``workers`` (threads over blocks of lanes).
 
     Raises:
-        ValueError: the stimulus or the watch does not fit the system.
+        ValueError: the stimulus or the watch does not fit the system, or it has latches and devices of their own.
     """
     lanes = stimulus.force.shape[2]
     watch = watch or Watch(np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64))
     _check(system, stimulus, watch, steps, steps_per_period)
     n = len(system.names)
-    blocks = _blocks(lanes, n)
+    blocks = _blocks(lanes, n) if system.devices is None else [(start, BLOCK) for start in range(0, lanes, BLOCK)]
     # The last block may be padded with undriven lanes, which are dropped at the end.
     padded = blocks[-1][0] + blocks[-1][1]
     force = np.zeros((stimulus.force.shape[0], stimulus.force.shape[1], padded))
@@ -125,9 +126,38 @@ def simulate(
 
     plan = plan_of(system)
     place = plan.place()
+    waves = wave_table(system.phases, 2 * steps_per_period) if system.devices is not None else turn
 
     def advance(block: tuple[int, int]) -> None:
         start, width = block
+        if system.devices is not None:
+            masses, springs = system.devices.block(start)
+            advance_devices(
+                start,
+                x,
+                v,
+                peak,
+                masses,
+                springs,
+                system.row_start,
+                system.column,
+                system.phase,
+                waves,
+                system.inertia,
+                system.damping,
+                stimulus.masses,
+                force * system.inertia,
+                stimulus.first_steps,
+                stimulus.interval_steps,
+                steps,
+                system.period / steps_per_period,
+                watch.masses,
+                watch.instants,
+                readings,
+                trace_stride,
+                trace,
+            )
+            return
         kernel = advance_one if width == 1 else advance_block
         kernel(
             start,
@@ -175,6 +205,8 @@ def _blocks(lanes: int, masses: int) -> list[tuple[int, int]]:
 def _check(system: System, stimulus: Stimulus, watch: Watch, steps: int, steps_per_period: int) -> None:
     n = len(system.names)
     intervals, driven, lanes = stimulus.force.shape
+    if system.devices is not None and (system.devices.count not in (1, lanes) or len(system.latch_mass)):
+        raise ValueError("devices are one for all lanes or one a lane, and have no latches")
     if lanes < 1 or intervals < 1 or driven != len(stimulus.masses):
         raise ValueError("a stimulus needs at least one lane and one interval, and a force for every driven mass")
     if stimulus.interval_steps < 1 or stimulus.first_steps < 0 or steps < 0 or steps_per_period < 1:

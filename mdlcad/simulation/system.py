@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from mdlcad.errors import UsageError
 from mdlcad.network.model import CouplingKind, Network
+from mdlcad.simulation.devices import Devices
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -38,6 +39,7 @@ class System:
         latch_clock, latch_mass: int[h], the source C and the target M of each latch coupling.
         latch_base, latch_swing, latch_wave: float[h], float[h], int[h], its strength.
         inertia, damping, quartic, period, phases: m, b, lambda, T, P.
+        devices: devices of this structure with numbers of their own, which are then what is simulated.
     """
 
     names: tuple[str, ...]
@@ -62,6 +64,7 @@ class System:
     quartic: float
     period: float
     phases: int
+    devices: Devices | None = None
 
     def index(self, name: str) -> int:
         """Index of the mass called ``name``; UsageError if there is none."""

@@ -6,7 +6,7 @@ import pytest
 from mdlcad.artefact import from_json, to_json
 from mdlcad.errors import UsageError
 from mdlcad.mechanics import Process, Sizing, load_process, size
-from mdlcad.mechanics.leaves import LargeLeaf
+from mdlcad.mechanics.leaves import LargeLeaf, chain_of
 from mdlcad.mechanics.unit import unit_law
 from mdlcad.parts.stiffness import carrier_faults, carrier_stiffnesses
 from tests.parts.device import Device, small_device, small_network
@@ -83,7 +83,7 @@ def test_preload_and_compensation_follow_from_what_is_built(device: Device) -> N
 def test_bias_offset_pulls_against_q(device: Device) -> None:
     bias, law = device.sizing.biases[0], device.sizing.law
     # force -q F0 on the shuttle at x = 0, at large displacements
-    held = LargeLeaf(bias.leaf.kind, bias.leaf.shape, device.process).force(-bias.offset, 0.0)
+    held = LargeLeaf(chain_of(bias.leaf.kind, bias.leaf.shape, device.process)).force(-bias.offset, 0.0)
     assert held == pytest.approx(bias.bias * law.force_unit, rel=1e-3)
     assert bias.leaf.own * bias.offset == pytest.approx(-bias.bias * law.force_unit, rel=0.1)  # as linear theory says
 

@@ -1,0 +1,177 @@
+"""From measured flexures to the numbers of the network's model: stiffnesses, biases and what is beyond them.
+
+Lengths in mm, forces in N on the one side; on the other everything in units of X0, S0 and F0 = S0 X0 of the process, as
+in ``network.model`` and ``simulation.devices``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from mdlcad.mechanics.flexure import Chain, Sheet, signal_matrix
+from mdlcad.mechanics.frame import Array
+from mdlcad.mechanics.leaves import LargeLeaf, LeafKind, higher_terms
+from mdlcad.mechanics.reduced import UnitNumbers, force_of
+from mdlcad.mechanics.series import SpringPlan, frame_of, spring_stiffness
+from mdlcad.signoff.measure import BeamSeen, UnitSeen
+
+
+@dataclass(frozen=True, slots=True)
+class Scale:
+    """Units of the network: ``stiffness`` S0 in N/mm, ``length`` X0 in mm."""
+
+    stiffness: float
+    length: float
+
+    @property
+    def force(self) -> float:
+        """F0, N."""
+        return self.stiffness * self.length
+
+
+@dataclass(frozen=True, slots=True)
+class UnitFit:
+    """k = base + swing p and the quartic that come nearest to a unit's law over what its shuttle does."""
+
+    base: float
+    swing: float
+    quartic: float
+
+
+@dataclass(frozen=True, slots=True)
+class SpringNumbers:
+    """A coupler or rocker: c, the stiffness that it adds to its two ends, and Q, C, B of ``simulation.devices``."""
+
+    strength: float
+    self_source: float
+    self_target: float
+    apart: float
+    together: float
+    skew: float
+
+
+@dataclass(frozen=True, slots=True)
+class BiasNumbers:
+    """A bias leaf: q, and the terms of second to fourth order in x that it adds to its mass."""
+
+    bias: float
+    stiffness: float
+    cubic: float
+    quartic: float
+
+
+def unit_numbers(seen: UnitSeen, sheet: Sheet, beams: float = 0.0, leaves: float = 0.0) -> UnitNumbers:
+    """The law's numbers of a unit as drawn, or with its beams and the leaves of its series spring thicker.
+
+    Beams of a side are in parallel, both sides and the series spring in a row in x. Beams that differ count by the sum
+    of their stiffnesses.
+
+    Args:
+        beams, leaves: extra thickness, mm.
+    """
+
+    def bending(side: Sequence[BeamSeen]) -> float:
+        return sum(sheet.modulus * sheet.depth * (beam.wall + beams) ** 3 / beam.span**3 for beam in side)
+
+    def stretching(side: Sequence[BeamSeen]) -> float:
+        return sum(sheet.modulus * sheet.depth * (beam.wall + beams) / beam.span for beam in side)
+
+    count = len(seen.left)
+    span = float(np.mean([beam.span for beam in (*seen.left, *seen.right)]))
+    across = bending(seen.left) + bending(seen.right)
+    one = across * span**3 / (24.0 * count)
+    turn = sum(
+        stretching([beam]) * beam.y**2 + 4.0 * sheet.modulus * sheet.depth * (beam.wall + beams) ** 3 / 12.0 / beam.span
+        for beam in seen.right
+    )
+    plan = seen.plan
+    thick = SpringPlan(
+        tuple((x, above + leaves, below + leaves) for x, above, below in plan.near),
+        tuple((x, above + leaves, below + leaves) for x, above, below in plan.far),
+        plan.stem + leaves,
+        plan.truss + leaves,
+        plan.height,
+    )
+    spring = spring_stiffness(frame_of(thick, sheet), bending(seen.right), turn)
+    axial = 1.0 / (1.0 / stretching(seen.left) + 1.0 / stretching(seen.right) + 1.0 / spring.push)
+    return UnitNumbers(count, span, one, axial, spring.across)
+
+
+_POINTS = 9
+
+
+def fit_unit(numbers: UnitNumbers, preload: float, swing: float, reaches: Sequence[float], scale: Scale) -> UnitFit:
+    """Fit the network's potential to a unit's law by least squares of the force.
+
+    Args:
+        preload: of the clock block with the clock in its middle, mm; swing: half stroke of the clock, mm.
+        reaches: how far shuttles go at p = 0, 1 and 2, mm.
+    """
+    rows, forces = [], []
+    for p, reach in enumerate(reaches):
+        at = np.linspace(reach / _POINTS, reach, _POINTS)
+        x = at / scale.length
+        rows.append(np.stack([x, p * x, x**3], axis=1))
+        forces.append(force_of(numbers, preload + (p - 1) * swing, at) / scale.force)
+    found = np.linalg.lstsq(np.concatenate(rows), np.concatenate(forces), rcond=None)[0]
+    return UnitFit(*map(float, found))
+
+
+@dataclass(frozen=True, slots=True)
+class LeafLaw:
+    """A coupler or rocker by itself: N/mm at its hub's end, across, at its far end; Q, C, B in N/mm^3 and N/mm^2."""
+
+    own: float
+    across: float
+    far: float
+    quartic: float
+    common: float
+    skew: float
+
+
+def leaf_law(chain: Chain, kind: LeafKind, throw: float) -> LeafLaw:
+    """What a coupler or rocker does; ``throw``: the largest displacement of either end, mm.
+
+    Raises:
+        ArithmeticError: it finds no equilibrium at its farthest.
+    """
+    matrix = signal_matrix(chain)
+    own, across, far = float(matrix[0, 0]), float(matrix[0, 1]), float(matrix[1, 1])
+    cases: tuple[tuple[float, float], ...] = ((throw, -throw),)
+    if kind is LeafKind.ROCKER:
+        cases += ((throw, throw), (-throw, -throw))
+    terms = higher_terms(LargeLeaf(chain), kind, own, across, cases)
+    return LeafLaw(own, across, far, terms.quartic, terms.common, terms.skew)
+
+
+def spring_numbers(law: LeafLaw, carrier: float, scale: Scale) -> SpringNumbers:
+    """A coupler or rocker in a row with its carrier (N/mm), which gives way under its far end, the source's.
+
+    Exact for what is linear; what is beyond takes place in the share of the motion that the flexure itself makes.
+    """
+    share = carrier / (carrier + law.far)
+    stiff = scale.length**2 / scale.stiffness
+    return SpringNumbers(
+        strength=-law.across * share / scale.stiffness,
+        self_source=law.far * share / scale.stiffness,
+        self_target=(law.own - law.across**2 / (carrier + law.far)) / scale.stiffness,
+        apart=law.quartic * share**4 * stiff,
+        together=law.common * share**4 * stiff,
+        skew=law.skew * share**3 * scale.length / scale.stiffness,
+    )
+
+
+def bias_numbers(chain: Chain, offset: float, throw: float, scale: Scale) -> BiasNumbers:
+    """A bias leaf whose post stands ``offset`` mm above the row: its force on the shuttle over +-``throw`` mm.
+
+    Raises:
+        ArithmeticError: it finds no equilibrium there.
+    """
+    large = LargeLeaf(chain)
+    at = np.linspace(-throw, throw, _POINTS)
+    force: Array = np.array([large.force(float(y) - offset, 0.0) for y in at]) / scale.force
+    q, stiffness, cubic, quartic = np.polynomial.polynomial.polyfit(at / scale.length, force, 3)
+    return BiasNumbers(float(q), float(stiffness), float(cubic), float(quartic))

@@ -1,0 +1,215 @@
+"""Devices as they are built: one structure, every number of every mass and spring its own, and springs that stiffen.
+
+Beside ``network.model``, a device's mass has its own quartic and a cubic term, and a spring has terms of fourth and
+third order in how far its ends are apart and in their sum (a rocker's ends push each other through both):
+
+    V = sum_i [ lambda_i/4 x^4 + beta_i/3 x^3 + 1/2 (u_i + w_i p) x^2 + q_i x ]
+      + sum_springs [ - c x_i x_j + Q/4 (x_i - x_j)^4 + C/4 (x_i + x_j)^4 + B (x_i + x_j) (x_i - x_j)^2 ]
+
+and dry friction, f v / (|v| + CREEP): Coulomb's law, made smooth where a mass all but stands still. The classical
+Runge-Kutta step, all devices of a block side by side.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mdlcad.simulation.compiled import kernel
+
+Floats = NDArray[np.float64]
+
+BLOCK = 8
+
+CREEP = 0.05
+"""Speed at which friction is half of its bound; masses that switch move at 1 and more."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Devices:
+    """L devices of n masses and e coupling entries, in the order of ``System``; L = 1 stands for every lane.
+
+    Attributes:
+        base, swing, bias, quartic, cubic, friction: float[n, L]: u, w, q, lambda, beta, f.
+        strength, apart, together, skew: float[e, L]: c, Q, C, B of each entry (two a spring).
+    """
+
+    base: Floats
+    swing: Floats
+    bias: Floats
+    quartic: Floats
+    cubic: Floats
+    friction: Floats
+    strength: Floats
+    apart: Floats
+    together: Floats
+    skew: Floats
+
+    @property
+    def count(self) -> int:
+        """L."""
+        return int(self.base.shape[1])
+
+    def block(self, start: int) -> tuple[tuple[Floats, ...], tuple[Floats, ...]]:
+        """Numbers of masses, float[6, n, BLOCK], and of springs, float[4, e, BLOCK], of the lanes from ``start`` on."""
+        lanes = np.minimum(np.arange(start, start + BLOCK), self.count - 1)
+        masses = (self.base, self.swing, self.bias, self.quartic, self.cubic, self.friction)
+        springs = (self.strength, self.apart, self.together, self.skew)
+        return (
+            tuple(np.ascontiguousarray(array[:, lanes]) for array in masses),
+            tuple(np.ascontiguousarray(array[:, lanes]) for array in springs),
+        )
+
+
+@kernel
+def pushes(
+    out: Any,
+    x: Any,
+    v: Any,
+    wave: Any,
+    phase: Any,
+    masses: Any,
+    springs: Any,
+    row_start: Any,
+    column: Any,
+    force: Any,
+    damping: float,
+) -> None:
+    """Write m x'' of every mass to ``out`` (float[n, BLOCK]); ``wave`` is p of every phase, ``force`` from outside."""
+    base, swing, bias, quartic, cubic, friction = masses
+    strength, apart, together, skew = springs
+    for i in range(x.shape[0]):
+        p = wave[phase[i]]
+        for lane in range(BLOCK):
+            y = x[i, lane]
+            stiff = base[i, lane] + swing[i, lane] * p + (cubic[i, lane] + quartic[i, lane] * y) * y
+            drag = damping + friction[i, lane] / (abs(v[i, lane]) + CREEP)
+            out[i, lane] = force[i, lane] - bias[i, lane] - drag * v[i, lane] - stiff * y
+        for e in range(row_start[i], row_start[i + 1]):
+            j = column[e]
+            for lane in range(BLOCK):
+                difference = x[i, lane] - x[j, lane]
+                total = x[i, lane] + x[j, lane]
+                out[i, lane] += (
+                    strength[e, lane] * x[j, lane]
+                    - apart[e, lane] * difference * difference * difference
+                    - together[e, lane] * total * total * total
+                    - skew[e, lane] * difference * (difference + 2.0 * total)
+                )
+
+
+@kernel
+def advance_devices(
+    lane0: int,
+    x: Any,
+    v: Any,
+    peak: Any,
+    masses: Any,
+    springs: Any,
+    row_start: Any,
+    column: Any,
+    phase: Any,
+    wave: Any,
+    inertia: float,
+    damping: float,
+    driven: Any,
+    force: Any,
+    first_interval: int,
+    interval: int,
+    steps: int,
+    h: float,
+    watched: Any,
+    instant: Any,
+    readings: Any,
+    stride: int,
+    trace: Any,
+) -> None:
+    """Advance lanes lane0 .. lane0 + BLOCK of x, v (float[n, lanes]) by ``steps`` steps of length ``h``, in place.
+
+    ``wave`` is float[2 * steps a period, phases], p at every half step; ``force`` float[intervals, driven, lanes];
+    ``readings`` float[cycles, watched, lanes]; ``trace`` float[frames, n, lanes], written every ``stride`` steps
+    (0: never).
+    """
+    n = x.shape[0]
+    points = wave.shape[0]
+    period = points // 2
+    y, u = np.empty((n, BLOCK)), np.empty((n, BLOCK))
+    stage_y, stage_u = np.empty((n, BLOCK)), np.empty((n, BLOCK))
+    sum_y, sum_u = np.empty((n, BLOCK)), np.empty((n, BLOCK))
+    push, outside = np.empty((n, BLOCK)), np.zeros((n, BLOCK))
+    for i in range(n):
+        for lane in range(BLOCK):
+            y[i, lane] = x[i, lane0 + lane]
+            u[i, lane] = v[i, lane0 + lane]
+            peak[i, lane0 + lane] = abs(y[i, lane])
+    due = np.zeros(period, dtype=np.bool_)
+    for w in range(watched.shape[0]):
+        due[instant[w]] = True
+    per = 1.0 / inertia
+    span = -1
+    for step in range(steps + 1):
+        within = step % period
+        if due[within] and step // period < readings.shape[0]:
+            for w in range(watched.shape[0]):
+                if instant[w] == within:
+                    for lane in range(BLOCK):
+                        readings[step // period, w, lane0 + lane] = y[watched[w], lane]
+        if stride > 0 and step % stride == 0:
+            for i in range(n):
+                for lane in range(BLOCK):
+                    trace[step // stride, i, lane0 + lane] = y[i, lane]
+        if step == steps:
+            break
+        last = span
+        span = 0
+        if step >= first_interval:
+            span = min(1 + (step - first_interval) // interval, force.shape[0] - 1)
+        if span != last:
+            for s in range(driven.shape[0]):
+                for lane in range(BLOCK):
+                    outside[driven[s], lane] = force[span, s, lane0 + lane]
+        for stage in range(4):
+            at = 2 * within + (stage + 1) // 2
+            if stage == 0:
+                pushes(push, y, u, wave[at % points], phase, masses, springs, row_start, column, outside, damping)
+            else:
+                pushes(
+                    push,
+                    stage_y,
+                    stage_u,
+                    wave[at % points],
+                    phase,
+                    masses,
+                    springs,
+                    row_start,
+                    column,
+                    outside,
+                    damping,
+                )
+            share = 1.0 if stage == 0 or stage == 3 else 2.0
+            ahead = h if stage == 2 else 0.5 * h
+            for i in range(n):
+                for lane in range(BLOCK):
+                    slope = u[i, lane] if stage == 0 else stage_u[i, lane]
+                    rate = per * push[i, lane]
+                    if stage == 0:
+                        sum_y[i, lane], sum_u[i, lane] = slope, rate
+                    else:
+                        sum_y[i, lane] += share * slope
+                        sum_u[i, lane] += share * rate
+                    if stage < 3:
+                        stage_y[i, lane] = y[i, lane] + ahead * slope
+                        stage_u[i, lane] = u[i, lane] + ahead * rate
+        for i in range(n):
+            for lane in range(BLOCK):
+                y[i, lane] += h / 6.0 * sum_y[i, lane]
+                u[i, lane] += h / 6.0 * sum_u[i, lane]
+                if abs(y[i, lane]) > peak[i, lane0 + lane]:
+                    peak[i, lane0 + lane] = abs(y[i, lane])
+    for i in range(n):
+        for lane in range(BLOCK):
+            x[i, lane0 + lane] = y[i, lane]
+            v[i, lane0 + lane] = u[i, lane]

@@ -1,0 +1,194 @@
+"""Numbers read off written STEP files, held against what was sized, and against dimensions changed in the files."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from shapely import Polygon, box
+from shapely.affinity import translate
+
+from mdlcad.errors import SignoffError
+from mdlcad.export.drawing import svg_plate
+from mdlcad.export.step import step_assembly
+from mdlcad.mechanics.leaves import LargeLeaf, LeafKind, chain_of
+from mdlcad.parts.body import Body, BodyKind
+from mdlcad.parts.plates import plates_of
+from mdlcad.parts.stiffness import carrier_stiffnesses
+from mdlcad.signoff.drawn import Drawn, measure_device
+from mdlcad.signoff.extraction import Built
+from mdlcad.signoff.lvs import compare, recover
+from mdlcad.signoff.measure import chain_of_leaf, measure_leaf, measure_unit, spans_at_x
+from mdlcad.signoff.numbers import Scale, bias_numbers
+from mdlcad.signoff.readback import ReadBody, read_step
+from mdlcad.signoff.sections import read_cut
+from tests.parts.device import Device, small_device
+
+
+@pytest.fixture(scope="module")
+def device() -> Device:
+    return small_device()
+
+
+@pytest.fixture(scope="module")
+def bodies(device: Device) -> dict[str, Body]:
+    return {body.name: body for body in device.bodies()}
+
+
+@pytest.fixture(scope="module")
+def files(device: Device, bodies: dict[str, Body], tmp_path_factory: pytest.TempPathFactory):
+    """The small device's STEP file, read back, and its plates' drawings."""
+    folder = tmp_path_factory.mktemp("small")
+    (folder / "plates").mkdir()
+    # what neither moves nor holds a flexure takes the most time to write and to read
+    still = (BodyKind.FRAME, BodyKind.BASE, BodyKind.COVER, BodyKind.CLOCK, BodyKind.SPACER)
+    moving = [body for body in bodies.values() if body.kind not in still]
+    (folder / "small.step").write_bytes(step_assembly("small", moving))
+    for plate, members in plates_of(list(bodies.values())).items():
+        (folder / "plates" / f"{plate}.svg").write_bytes(svg_plate(plate, members))
+    return read_step(folder / "small.step"), read_cut(folder, device.process)
+
+
+def built_of(device: Device, found: tuple[ReadBody, ...], cut: dict[str, Polygon]) -> Built:
+    recovered = recover(found)
+    assert compare(recovered, device.network).matched
+    drawn = measure_device(found, cut, recovered, device.process)
+    carriers = carrier_stiffnesses(device.network, device.placement, device.layout, device.sizing, device.process)
+    return Built(drawn, device.network, device.sizing, carriers, device.process)
+
+
+@pytest.fixture(scope="module")
+def built(device: Device, files) -> Built:
+    return built_of(device, *files)
+
+
+def drawn_of(built: Built) -> Drawn:
+    return built.record().drawn
+
+
+def rewritten(body: Body, section: Polygon, folder) -> ReadBody:
+    """The body with another outline, through a STEP file."""
+    path = folder / "one.step"
+    path.write_bytes(step_assembly("one", [replace(body, section=section, assembled=None)]))
+    return read_step(path)[0]
+
+
+def test_every_dimension_is_found(device: Device, built: Built) -> None:
+    unit, series, preloads = device.process.unit, device.sizing.series, {u.mass: u.preload for u in device.sizing.units}
+    for mass, seen in drawn_of(built).units.items():
+        for beam in (*seen.left, *seen.right):
+            assert (beam.wall, beam.span) == pytest.approx((unit.beam_wall, unit.span), abs=2e-4)
+        assert seen.preload == pytest.approx(preloads[mass], abs=1e-3)
+        for _, *walls in (*seen.plan.near, *seen.plan.far):
+            assert walls == pytest.approx([series.wall] * 2, abs=1e-3)
+        assert seen.plan.height == pytest.approx(series.height, abs=2e-4)
+    leaves = {item.name: item.leaf for item in drawn_of(built).couplers}
+    for size in device.sizing.couplers:
+        for half in leaves[size.coupling].halves:
+            assert half.walls == pytest.approx([size.leaf.shape.wall] * len(half.walls), abs=2e-4)
+            np.testing.assert_allclose(half.nodes, size.leaf.shape.path(), atol=2e-4)
+    (bias,), size = drawn_of(built).biases, device.sizing.biases[0]
+    np.testing.assert_allclose(bias.leaf.halves[0].nodes, size.leaf.shape.path(), atol=2e-4)
+    assert bias.offset == pytest.approx(size.offset, abs=2e-4)
+
+
+def test_the_numbers_are_the_networks(device: Device, built: Built) -> None:
+    """A coupler is softer by its carrier; k follows the potential to within the law's second order."""
+    carriers = carrier_stiffnesses(device.network, device.placement, device.layout, device.sizing, device.process)
+    ratio = {item.coupling: item.ratio for item in carriers}
+    wanted = {item.name: item.strength for item in device.network.couplings}
+    for item in built.network.couplings:
+        softer = ratio[item.name] / (1.0 + ratio[item.name])
+        assert item.strength == pytest.approx(wanted[item.name] * softer, rel=5e-3)
+    for mass, nominal in zip(built.network.masses, device.network.masses, strict=True):
+        assert mass.k0 + mass.k1 == pytest.approx(nominal.k0 + nominal.k1, abs=0.15)
+        assert mass.k1 == pytest.approx(nominal.k1, rel=0.05)
+    m2 = built.network.masses[2]
+    assert m2.bias == pytest.approx(0.5, rel=0.02)
+
+
+def test_the_quartic_is_kept(device: Device, built: Built) -> None:
+    record = built.record()
+    assert all(item.quartic == pytest.approx(1.0, abs=0.15) for item in record.masses)
+    numbers = {item.coupling: item.numbers for item in record.couplers}
+    scale = device.process.unit.throw_unit**2 / device.sizing.law.stiffness_unit
+    coupler = next(item for item in device.sizing.couplers if item.leaf.kind is LeafKind.COUPLER)
+    assert numbers["m0->m3"].apart == pytest.approx(coupler.leaf.quartic * scale, rel=0.4)
+    assert numbers["m0->m3"].together == 0.0
+    assert numbers["m1->m4"].together != 0.0
+
+
+def test_friction_is_bounded_by_what_weighs_and_what_turns(device: Device, built: Built) -> None:
+    friction = {item.mass: item.friction for item in built.record().masses}
+    assert 0.0 < friction["m5"] < 0.02  # its weight times the coefficient
+    weight = friction["m5"] * device.sizing.law.force_unit / device.process.stack.friction
+    unit = next(body for body in device.bodies() if body.name == "unit.m5")
+    light = unit.section.area * unit.thickness * 1.41e-6 * 9.81
+    assert light < weight < 4.0 * light  # its pins are of steel
+    assert friction["m4"] > friction["m3"]  # a rocker's eye on its post
+
+
+def test_beams_thinned_in_the_file_are_felt(device: Device, bodies, built: Built, files, tmp_path) -> None:
+    """K_b goes with t^3: k falls by kappa0 (1 - (1 - d/t)^3)."""
+    body, thinner = bodies["unit.m5"], 0.02
+    section = body.assembled or body.section
+    left = section.bounds[0] + 1.0
+    away = [box(section.bounds[0] - 1, top - thinner, left + 11.4, top + 0.2) for _, top in spans_at_x(section, left)]
+    seen = measure_unit("unit.m5", section)
+    right = seen.x + seen.half_hub
+    tops = [top for _, top in spans_at_x(section, left)]
+    away += [box(right + 0.05, top - thinner, right + 12.45, top + 0.2) for top in tops]
+    for hole in away:
+        section = section.difference(hole)
+    found, cut = files
+    read = rewritten(body, section, tmp_path)
+    changed = built_of(device, tuple(read if item.name == "unit.m5" else item for item in found), cut)
+    fallen = built.network.masses[5].k0 - changed.network.masses[5].k0
+    assert fallen == pytest.approx(1.5 * (1.0 - (1.0 - thinner / 0.5) ** 3), rel=0.25)
+    assert changed.network.masses[4] == built.network.masses[4]
+
+
+def test_a_coupler_thinned_in_the_file_is_felt(device: Device, bodies, built: Built, files, tmp_path) -> None:
+    """c goes with t^3."""
+    body, found = bodies["coupler.m0->m3"], files[0]
+    wall = device.sizing.couplers[0].leaf.shape.wall
+    hub = next(place for place in device.placement.masses if place.mass == "m3")
+    face = hub.x - device.sizing.rules.hub_half
+    block = body.section.intersection(box(face, -1000, face + 100, 1000))
+    far = body.section.bounds[0]
+    flexure = body.section.buffer(-0.05, join_style="mitre")
+    stubs = [box(x, hub.y - wall / 2 + 0.05, x + 0.1, hub.y + wall / 2 - 0.05) for x in (face - 0.09, far - 0.01)]
+    section = flexure.difference(block).union(block).union(stubs[0]).union(stubs[1]).intersection(body.section)
+    read = rewritten(body, section, tmp_path)
+    changed = built_of(device, tuple(read if item.name == body.name else item for item in found), files[1])
+    strength = changed.network.couplings[0].strength / built.network.couplings[0].strength
+    assert strength == pytest.approx(((wall - 0.1) / wall) ** 3, rel=0.06)
+
+
+def test_a_post_moved_is_felt(device: Device, built: Built, files) -> None:
+    found = list(files[0])
+    at = next(i for i, item in enumerate(found) if item.name == "post.bias.m2")
+    found[at] = replace(found[at], section=translate(found[at].section, 0.0, 0.1))
+    changed = built_of(device, tuple(found), files[1])
+    bias = device.sizing.biases[0]
+    moved = built.network.masses[2].bias - changed.network.masses[2].bias
+    assert moved == pytest.approx(bias.self_stiffness * 0.1 / device.process.unit.throw_unit, rel=0.1)
+
+
+def test_a_bias_leafs_terms_are_the_force_of_its_beams(device: Device, built: Built) -> None:
+    """From the sized shape, not the drawn one."""
+    bias, size, law = drawn_of(built).biases[0], device.sizing.biases[0], device.sizing.law
+    scale = Scale(law.stiffness_unit, device.process.unit.throw_unit)
+    found = bias_numbers(chain_of_leaf(bias.leaf, bias.sheet), bias.offset, device.sizing.rules.throw, scale)
+    leaf = LargeLeaf(chain_of(LeafKind.BIAS, size.leaf.shape, device.process))
+    for x in (-1.7, -0.6, 0.0, 1.1, 1.8):
+        force = leaf.force(1.5 * x - size.offset, 0.0) / law.force_unit
+        assert found.bias + found.stiffness * x + found.cubic * x**2 + found.quartic * x**3 == pytest.approx(
+            force, abs=0.01
+        )
+
+
+def test_what_is_no_flexure_is_refused(bodies: dict[str, Body]) -> None:
+    with pytest.raises(SignoffError, match=r"unit\.x"):
+        measure_unit("unit.x", box(0, 0, 10, 10))
+    with pytest.raises(SignoffError, match="coupler"):
+        measure_leaf("coupler.x", box(0, 0, 10, 4), 0.0, None)
