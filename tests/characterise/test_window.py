@@ -138,7 +138,7 @@ def test_the_parametron_file_says_what_a_slice_measures() -> None:
     library = load_library("parametron")
     standing, own = library.characterisation, library.dynamics
     assert standing is not None
-    sweep = replace(THRESHOLD_SWEEP, periods=(own.period,), spreads=(standing.spread,))
+    sweep = replace(THRESHOLD_SWEEP, periods=(own.period,), spreads=(standing.spread,), loads=())
     benches = [*gate_benches(library, 0), *threshold_circuits(library, 0)]
     spreads = count_spreads(benches, own.period, own.damping, sweep, runner())
     found = conclude(map_window(benches, sweep, runner()), borne_spread(spreads))
