@@ -3,8 +3,10 @@
 A plate falls into pieces; those that fit the bed stay as they are. A larger one is cut by straight seams through what
 is rigid and stands still or is one sheet (rims, ribs, base, cover, clock plates), never through a unit, a flexure or a
 carrier. Every crossing of a seam has a dovetail: its tongue is on the tile to the left of (or below) the seam, its
-socket is wider by the clearance, and tiles are put together from above. Seams of neighbouring plates are looked for
-from opposite sides, so that the screws through the stack tie each seam to a plate that has none there.
+socket is wider by the clearance, and tiles are put together from above. A rib is too narrow for that: it is crossed
+in the middle of a rib post alone, whose square then stands in a notch of either end and holds both. Seams of
+neighbouring plates are looked for from opposite sides, so that the screws through the stack tie each seam to a plate
+that has none there.
 """
 
 from __future__ import annotations
@@ -15,7 +17,7 @@ from itertools import pairwise
 
 import numpy as np
 import shapely
-from shapely import Geometry, Polygon
+from shapely import Geometry, MultiPolygon, Polygon
 from shapely.affinity import affine_transform
 
 from mdlcad.mechanics.process import Process
@@ -112,7 +114,9 @@ def tiles_of(plate: str, bodies: Sequence[Body], process: Process) -> Tiling:
             loose.append(members)
             continue
         fixed = [body.section for body in members if body.kind not in DIVISIBLE]
-        ways = [_cut(piece, _keep_out(piece, fixed, joint), joint, way, backwards) for way in (bed, bed[::-1])]
+        studs = _studs(members, process.pin.side)
+        keep_out = _keep_out(piece, fixed, studs, joint)
+        ways = [_cut(piece, keep_out, studs, joint, way, backwards) for way in (bed, bed[::-1])]
         found = [parts for parts in ways if isinstance(parts, list)]
         if found:
             for part in min(found, key=len):
@@ -139,15 +143,25 @@ def _inside(section: Polygon, piece: Polygon) -> bool:
     return bool(shapely.dwithin(piece, section.representative_point(), GRID))
 
 
-def _keep_out(piece: Polygon, fixed: Sequence[Polygon], joint: Joint) -> Geometry:
-    """Where no seam may be: at what must stay whole, and at holes, a wall around each."""
+def _studs(members: Sequence[Body], side: float) -> MultiPolygon:
+    """The holes of rib posts: the square ones in what stands still."""
+    holes = [Polygon(ring) for body in members if body.kind is BodyKind.FRAME for ring in body.section.interiors]
+    return MultiPolygon([hole for hole in holes if len(hole.exterior.coords) == 5 and _is_square(hole, side)])
+
+
+def _is_square(hole: Polygon, side: float) -> bool:
+    return all(abs(length - side) < 2.0 * GRID for length in _extent(hole))
+
+
+def _keep_out(piece: Polygon, fixed: Sequence[Polygon], studs: MultiPolygon, joint: Joint) -> Geometry:
+    """Where no seam may be: at what must stay whole, and within a wall of holes but those of rib posts."""
     holes = [Polygon(ring) for ring in piece.interiors]
-    small = [hole for hole in holes if hole.area < _HOLE_MM2]
-    return shapely.union_all([shape.buffer(joint.wall, join_style="mitre") for shape in (*fixed, *small)])
+    small = [hole for hole in holes if hole.area < _HOLE_MM2 and not shapely.intersects(studs, hole)]
+    return shapely.union_all([*fixed, *(hole.buffer(joint.wall, join_style="mitre") for hole in small)])
 
 
 def _cut(
-    piece: Polygon, keep_out: Geometry, joint: Joint, bed: tuple[float, float], backwards: bool
+    piece: Polygon, keep_out: Geometry, studs: MultiPolygon, joint: Joint, bed: tuple[float, float], backwards: bool
 ) -> list[Polygon] | str:
     """Parts of ``piece`` that fit the bed, cut for a bed that lies as given; why there are none, in words."""
     if fits(piece, bed):
@@ -156,8 +170,8 @@ def _cut(
         size = _extent(piece)[axis]
         if size <= bed[axis]:
             continue
-        turned, hindered = (_swapped(piece), _swapped(keep_out)) if axis else (piece, keep_out)
-        sides = _split(turned, hindered, joint, bed[axis], backwards)
+        turned = (_swapped(piece), _swapped(keep_out), _swapped(studs)) if axis else (piece, keep_out, studs)
+        sides = _split(turned[0], turned[1], turned[2], joint, bed[axis], backwards)
         if sides is None:
             low, high = piece.bounds[axis], piece.bounds[axis + 2]
             return (
@@ -167,7 +181,7 @@ def _cut(
         parts: list[Polygon] = []
         for side in sides:
             for part in pieces(_swapped(side) if axis else side):
-                found = _cut(part, keep_out, joint, bed, backwards)
+                found = _cut(part, keep_out, studs, joint, bed, backwards)
                 if isinstance(found, str):
                     return found
                 parts += found
@@ -181,15 +195,15 @@ def _swapped(shape: Geometry) -> Geometry:
 
 
 def _split(
-    piece: Polygon, keep_out: Geometry, joint: Joint, most: float, backwards: bool
+    piece: Polygon, keep_out: Geometry, studs: MultiPolygon, joint: Joint, most: float, backwards: bool
 ) -> tuple[Geometry, Geometry] | None:
     """Both sides of the best seam x = c of which at least one is no wider than ``most``; None if there is none."""
     shapely.prepare(piece)
     shapely.prepare(keep_out)
-    for c in _candidates(piece, joint, most, backwards):
-        tongues = _tongues(piece, keep_out, joint, c)
+    x0, y0, x1, y1 = piece.bounds
+    for c in _candidates((x0, x1), studs, joint, most, backwards):
+        tongues = _tongues(piece, keep_out, studs, joint, c)
         if tongues:
-            x0, y0, _, y1 = piece.bounds
             left = shapely.union_all([box(x0 - 1.0, y0 - 1.0, c, y1 + 1.0), *tongues], grid_size=GRID)
             socket = left.buffer(joint.clearance, join_style="mitre")
             return (
@@ -199,27 +213,36 @@ def _split(
     return None
 
 
-def _candidates(piece: Polygon, joint: Joint, most: float, backwards: bool) -> Iterator[float]:
+def _candidates(
+    extent: tuple[float, float], studs: MultiPolygon, joint: Joint, most: float, backwards: bool
+) -> list[float]:
     """Seams to try: from the farthest one that the first tile reaches, back towards the start."""
-    x0, _, x1, _ = piece.bounds
-    reach = np.arange(0.0, most - 2.0 * joint.depth, _STEP_MM)
-    for back in reach:
-        yield round(float(x1 - most + back) if backwards else float(x0 + most - joint.depth - back), 4)
+    x0, x1 = extent
+    low, high = (x1 - most, x1 - 2.0 * joint.depth) if backwards else (x0 + 2.0 * joint.depth, x0 + most - joint.depth)
+    start = low if backwards else high
+    found = [float(x) for x in np.arange(low, high, _STEP_MM)]
+    # a rib can be crossed at its posts alone
+    found += [stud.centroid.x for stud in studs.geoms if low <= stud.centroid.x <= high]
+    return sorted({round(c, 4) for c in (*found, high)}, key=lambda c: abs(c - start))
 
 
-def _tongues(piece: Polygon, keep_out: Geometry, joint: Joint, c: float) -> list[Polygon]:
-    """The tongues of the seam x = c, at least one a crossing; none if the seam is not legal."""
+def _tongues(piece: Polygon, keep_out: Geometry, studs: MultiPolygon, joint: Joint, c: float) -> list[Polygon]:
+    """The tongues of the seam x = c, one a crossing or more but for those at rib posts; none if it is not legal."""
     _, y0, _, y1 = piece.bounds
     line = shapely.LineString([(c, y0 - 1.0), (c, y1 + 1.0)])
-    if shapely.intersects(keep_out, line):
+    near = [stud for stud in studs.geoms if shapely.dwithin(stud, line, joint.wall)]
+    if shapely.intersects(keep_out, line) or any(abs(stud.centroid.x - c) > 2.0 * GRID for stud in near):
         return []
     crossing = shapely.intersection(piece, line)
     found: list[Polygon] = []
     for part in getattr(crossing, "geoms", [crossing]):
         low, high = part.bounds[1], part.bounds[3]
+        if shapely.dwithin(part, keep_out, joint.wall):
+            return []
+        if high - low < joint.head and any(shapely.dwithin(part, stud, GRID) for stud in near):
+            continue
         count = max(1, int((high - low) / joint.pitch))
-        edges = np.linspace(low, high, count + 1)
-        own = [_tongue(piece, keep_out, joint, c, a, b) for a, b in pairwise(edges)]
+        own = [_tongue(piece, keep_out, joint, c, a, b) for a, b in pairwise(np.linspace(low, high, count + 1))]
         made = [tongue for tongue in own if tongue is not None]
         if not made:
             return []

@@ -93,6 +93,28 @@ def test_neighbouring_plates_have_their_seams_apart():
     assert abs(seam("unit") - seam("V")) > 50.0
 
 
+def test_a_rib_is_crossed_in_the_middle_of_a_post_and_nowhere_else():
+    side, rib = PROCESS.pin.side, box(98, 0, 102, HIGH)
+    posts = [body(f"post.{y}", box(99, y - 1, 101, y + 1), kind=BodyKind.POST) for y in (35.0, 55.0)]
+    holes = shapely.union_all([post.section for post in posts])
+    ribbed = body("frame.unit", ring().section.union(rib).difference(holes), kind=BodyKind.FRAME)
+    tiling = tiles_of("unit", [ribbed], with_bed(PROCESS, (205.0, 60.0)))
+    assert tiling.untiled == ()
+    lower, upper = (shapely.union_all([item.section for item in tile.bodies]) for tile in tiling.tiles)
+    # either rib end has a notch that holds the post sideways
+    for part in (lower, upper):
+        for dx in (-side, side):
+            pushed = shapely.affinity.translate(posts[1].section, dx / 4.0)
+            assert shapely.intersects(part, pushed.buffer(-0.01))
+    assert lower.bounds[3] == pytest.approx(55.0 + joint_of(PROCESS).depth, abs=1e-3)
+    plain = body("frame.unit", ring().section.union(rib), kind=BodyKind.FRAME)
+    # without the post the rib bars that seam, and along the rib there is no room for one
+    plain = tiles_of("unit", [plain], with_bed(PROCESS, (205.0, 60.0)))
+    assert len(plain.tiles) > 2
+    seams = {round(x, 1) for tile in plain.tiles for item in tile.bodies for x in item.section.bounds[::2]}
+    assert not any(96.0 < x < 104.0 for x in seams)
+
+
 @pytest.mark.parametrize("name", ["pom_cut", "petg_fdm", "pa12_mjf"])
 def test_the_dovetail_of_a_shipped_process_fits_its_rim(name):
     process = load_process(name)
