@@ -11,7 +11,7 @@ import math
 from dataclasses import dataclass, field, replace
 from random import Random
 
-from mdlcad.mapping.options import PHASES, Guard, Of, Option, OptionGraph
+from mdlcad.mapping.options import HOLD_PHASE, PHASES, STORE_PHASE, Guard, Of, Option, OptionGraph
 from mdlcad.mapping.plan import Key, Role
 from mdlcad.mapping.registers import Term
 from mdlcad.mapping.selection import MASS_COST, Selection, selection_cost, time_selection
@@ -19,6 +19,8 @@ from mdlcad.mapping.subject import TRUE
 
 # In units of cost, of which a mass has 16.
 _HEAT = 18.0
+# Masses a unit of charge: more than any gate saves.
+_LOYAL = 10.0
 _RESTARTS = 3
 # A small device has few tastes; more passes find nothing new.
 _MOST_ROUNDS = 1500
@@ -36,12 +38,14 @@ class Taste:
         carriers: for every output the number of its carrier.
         favour: factor on the price of a node (1 if it is not listed).
         order: the required masses and the carriers are made in the order of these numbers.
+        loyalty: how much the charge for being strange counts, in masses a unit of charge.
     """
 
     registers: tuple[tuple[int, int], ...]
     carriers: tuple[int, ...]
     favour: dict[int, float] = field(default_factory=dict)
     order: tuple[float, ...] = ()
+    loyalty: float = 1.0 / MASS_COST
 
 
 class Pass:
@@ -71,7 +75,7 @@ class Pass:
         roots = [*graph.required, *(carrier.key for carrier in selection.carriers)]
         ranks = taste.order or (0.0,) * len(roots)
         for _, root in sorted(zip(ranks, roots, strict=True)):
-            if not self._make(root, selection, guards, taste.favour, falling):
+            if not self._make(root, selection, guards, taste, falling):
                 return None
         for keys in graph.sensors:
             if not any(key in selection.chosen for key in keys):
@@ -79,24 +83,32 @@ class Pass:
         time_selection(graph, selection)
         return selection
 
-    def _make(
-        self, root: Key, selection: Selection, guards: set[Guard], favour: dict[int, float], falling: bool
-    ) -> bool:
+    def _make(self, root: Key, selection: Selection, guards: set[Guard], taste: Taste, falling: bool) -> bool:
         stack = [root]
         while stack:
             key = stack.pop()
             if key.role is Role.TICK or key in selection.chosen:
                 continue
-            number = self._pick(key, selection, guards, favour, falling)
+            gate = self._gate_before(key, selection) if taste.loyalty == _LOYAL else None
+            if gate is not None:
+                stack += [key, gate]
+                continue
+            number = self._pick(key, selection, guards, taste, falling)
             if number is None:
                 return False
             selection.chosen[key] = number
             stack += self._graph.options[key][number].sources
         return True
 
-    def _pick(
-        self, key: Key, selection: Selection, guards: set[Guard], favour: dict[int, float], falling: bool
-    ) -> int | None:
+    def _gate_before(self, key: Key, selection: Selection) -> Key | None:
+        """The phase in which the earlier network had the gate of ``key``'s node, if it was another phase."""
+        phases = [replace(key, phase=phase) for phase in range(PHASES)] if key.role is Role.LOGIC else []
+        if not phases or self._graph.subject.is_input(key.of[0]) or any(twin in selection.chosen for twin in phases):
+            return None
+        had = [twin for twin in phases if 0 in self._graph.strange.get(twin, ())[1:]]
+        return had[0] if had and key not in had else None
+
+    def _pick(self, key: Key, selection: Selection, guards: set[Guard], taste: Taste, falling: bool) -> int | None:
         options = self._graph.options[key]
         if key.role is Role.LOGIC:
             if any(Key(Role.LOGIC, key.of, phase) in selection.chosen for phase in range(PHASES)):
@@ -104,7 +116,7 @@ class Pass:
             if self._graph.subject.is_input(key.of[0]):
                 return _own_option(options)
         priced = [
-            (self._price(option, selection, favour) + self._graph.charge(key, number) / MASS_COST, number)
+            (self._price(option, selection, taste.favour) + taste.loyalty * self._graph.charge(key, number), number)
             for number, option in enumerate(options)
             if (option.guard is None or option.guard in guards) and not (key.role is Role.LOGIC and number == 0)
         ]
@@ -160,6 +172,33 @@ def plain_taste(graph: OptionGraph, followings: list[int]) -> Taste:
     return Taste(registers, carriers)
 
 
+def loyal_taste(graph: OptionGraph, plain: Taste) -> Taste:
+    """Registers, outputs and gates as an earlier network had them, wherever it had them; else as ``plain``."""
+    registers = []
+    for index, (usual, release) in enumerate(plain.registers):
+        choices = graph.registers[index]
+        store, hold = Key(Role.STORE, (index,), STORE_PHASE), Key(Role.HOLD, (index,), HOLD_PHASE)
+        number = _least_strange(graph, store, tuple(range(len(choices.sets))), usual)
+        registers.append((number, _least_strange(graph, hold, choices.fits[number], release)))
+    carriers = []
+    for ways, usual in zip(graph.carriers, plain.carriers, strict=True):
+        charges = [min(graph.strange.get(way.key, (0,))) for way in ways]
+        ranked = [(charge, number != usual, number) for number, charge in enumerate(charges)]
+        carriers.append(min(ranked)[2])
+    return replace(plain, registers=tuple(registers), carriers=tuple(carriers), loyalty=_LOYAL)
+
+
+def _least_strange(graph: OptionGraph, key: Key, numbers: tuple[int, ...], usual: int) -> int:
+    """Of a register's choices the one by which ``key`` is least strange; ``usual`` if that does not decide."""
+    charges: dict[int, int] = {}
+    for place, option in enumerate(graph.options[key]):
+        if option.guard is not None and option.guard.number in numbers:
+            known = charges.get(option.guard.number)
+            charge = graph.charge(key, place)
+            charges[option.guard.number] = charge if known is None else min(known, charge)
+    return min((charge, number != usual, number) for number, charge in charges.items())[2]
+
+
 def search(graph: OptionGraph, start: Taste, effort: int, seed: int) -> Selection:
     """The cheapest selection that annealing finds from ``start``.
 
@@ -171,9 +210,15 @@ def search(graph: OptionGraph, start: Taste, effort: int, seed: int) -> Selectio
     if best is None:
         raise ValueError("a node cannot be made from the ones before it")
     rounds = min(_MOST_ROUNDS, effort // (_RESTARTS * max(1, len(best.chosen))))
-    plain = best
-    for restart in range(_RESTARTS):
-        found = _anneal(graph, make, start, plain, rounds, Random(seed * _RESTARTS + restart))
+    plain, starts = best, [(start, best)] * _RESTARTS
+    if graph.strange:
+        loyal = loyal_taste(graph, start)
+        kept = make.select(loyal, falling=make.falling)
+        if kept is not None:
+            best = min(best, kept, key=lambda selection: selection_cost(graph, selection))
+            starts = [(loyal, kept), (loyal, kept), (start, plain)]
+    for restart, (taste, first) in enumerate(starts):
+        found = _anneal(graph, make, taste, first, rounds, Random(seed * _RESTARTS + restart))
         if selection_cost(graph, found) < selection_cost(graph, best):
             best = found
     return best
