@@ -7,6 +7,8 @@ CP-SAT does, and keeps the number of trunks small and even over the channels.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from ortools.sat.python import cp_model
 
 from mdlcad.placement.lattice import Lattice
@@ -20,8 +22,18 @@ PASSED = 3
 """A hub column that a tab passes takes the room of so many trunks."""
 
 
-def choose_columns(problem: Problem, lattice: Lattice, seed: int) -> tuple[int, ...] | None:
-    """A column for every mass; None if there is no way, none was found in the limit, or the network is too large."""
+AWAY = 10
+"""A mass in another column than its home counts as so many trunks."""
+
+
+def choose_columns(
+    problem: Problem, lattice: Lattice, seed: int, homes: Sequence[int] = (), held: bool = False
+) -> tuple[int, ...] | None:
+    """A column for every mass; None if there is no way, none was found in the limit, or the network is too large.
+
+    Args:
+        homes: by mass, the column that it should stay in, or -1; if ``held``, must.
+    """
     masses, columns = len(problem.mass) - 1, len(lattice.column_x)
     if masses > MOST_MASSES or len(problem.coupling) * columns**2 > MOST_CLAUSES:
         return None
@@ -52,11 +64,18 @@ def choose_columns(problem: Problem, lattice: Lattice, seed: int) -> tuple[int, 
                 continue
             model.add_implication(at[mass][column], trunk[mass][channel])
             passed.append(PASSED * max(0, last - first + 1) * at[mass][column])
+    away: list[cp_model.LinearExprT] = []
+    for mass, home in enumerate(homes):
+        if home >= 0 and held:
+            model.add(at[mass][home] == 1)
+        elif home >= 0:
+            away.append(AWAY * at[mass][home].negated())
+            model.add_hint(at[mass][home], True)
     most = model.new_int_var(0, masses, "most")
     loads = [sum(row[k] for row in trunk) for k in range(columns + 1)]
     for load in loads:
         model.add(load <= most)
-    model.minimize(sum(loads) + 2 * most + sum(passed))
+    model.minimize(sum(loads) + 2 * most + sum(passed) + sum(away))
     solver = cp_model.CpSolver()
     solver.parameters.num_workers = 1
     solver.parameters.random_seed = seed

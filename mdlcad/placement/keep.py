@@ -12,6 +12,7 @@ from scipy.optimize import linear_sum_assignment
 from mdlcad.mechanics.rules import LayoutRules
 from mdlcad.network.model import Network
 from mdlcad.placement.anneal import HARD, anneal
+from mdlcad.placement.columns import choose_columns
 from mdlcad.placement.lattice import Lattice
 from mdlcad.placement.placement import Placement
 from mdlcad.placement.placer import (
@@ -32,8 +33,8 @@ SIDE_PRICE = HARD / 4
 """What it costs to serve a coupling, or to hang a bias leaf, on the other side."""
 WARM, COOL = 4.0, 0.3
 """First and last temperature: warm enough to pass a broken rule on the way, too cool to forget the start."""
-COLUMN_APART, ROW_APART = 4.0, 1.0
-"""How far a new mass counts as from its neighbours, for a column and for a row between them."""
+COLUMN_APART, ROW_APART, OTHER_COLUMN = 4.0, 1.0, 1000.0
+"""How far a new mass counts as from its neighbours, for a column and for a row between them; and from its column."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,9 +58,11 @@ def place_kept(
     """Place ``network`` with every kept mass in its slot, or elsewhere for ``price``. Same arguments, same result."""
     problem = build(network, lattice, rules)
     home = _homes(network, lattice, rules, kept)
-    slot_of = _seated(problem, home[: len(network.masses), 0])
+    at, stiff = home[: len(network.masses), 0], price == PRICES[0]
+    whole = stiff and bool(np.all(at >= 0))
+    slot_of = at if whole else _seated(problem, at, _columns(problem, lattice, at, stiff, seed))
     state, source = _held(problem, slot_of, home, price, seed)
-    if price == PRICES[0] and np.array_equal(slot_of, home[: len(network.masses), 0]):
+    if whole:
         moves = 0  # nobody is new: there is nothing to look for
     else:
         moves = MOVES_PER_MASS * len(network.masses)
@@ -118,12 +121,25 @@ def _all_known(problem: Problem, state: State, home: Ints) -> bool:
     return bool(np.all(sides[within] >= 0) and np.all(biases[biased] >= 0))
 
 
-def _seated(problem: Problem, home: Ints) -> Ints:
-    """(M,) a slot for every mass: its home, or of the free ones one near those that it is coupled to.
+def _columns(problem: Problem, lattice: Lattice, home: Ints, held: bool, seed: int) -> Ints | None:
+    """(M,) a column for every mass, its home's where that can be (with ``held``: always); None if none were found."""
+    homes = [int(problem.slot[slot, 0]) if slot >= 0 else -1 for slot in home.tolist()]
+    found = choose_columns(problem, lattice, seed, homes, held)
+    return None if found is None else np.array(found, np.int32)
 
-    The new masses are seated in rounds, those with a seated neighbour first, each round by the least sum of distances.
+
+def _seated(problem: Problem, home: Ints, columns: Ints | None) -> Ints:
+    """(M,) a slot for every mass: its home if that is in its column, or of the free ones one near its neighbours.
+
+    The others are seated in rounds, those with a seated neighbour first, each round by the least sum of distances.
+
+    Args:
+        columns: the column for every mass, None if any will do.
     """
     slot_of = home.copy()
+    if columns is not None:
+        there = problem.slot[np.maximum(home, 0), 0] == columns
+        slot_of[~there] = -1
     links = problem.coupling[:, :2]
     while np.any(slot_of < 0):
         lost = [int(mass) for mass in np.flatnonzero(slot_of < 0)]
@@ -137,7 +153,9 @@ def _seated(problem: Problem, home: Ints) -> Ints:
             for friend in seated[mass]:
                 apart = np.abs(problem.slot[free] - problem.slot[slot_of[friend]])
                 far[row] += COLUMN_APART * np.maximum(0, apart[:, 0] - 1) + ROW_APART * apart[:, 1]
-        rows, columns = linear_sum_assignment(far)
-        for row, column in zip(rows.tolist(), columns.tolist(), strict=True):
-            slot_of[turn[row]] = free[column]
+            if columns is not None:
+                far[row] += OTHER_COLUMN * (problem.slot[free, 0] != columns[mass])
+        rows, places = linear_sum_assignment(far)
+        for row, place in zip(rows.tolist(), places.tolist(), strict=True):
+            slot_of[turn[row]] = free[place]
     return slot_of

@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from itertools import pairwise
+from itertools import pairwise, product
 
 from mdlcad.mechanics.rules import LayoutRules
 from mdlcad.network.model import Network
+from mdlcad.placement.anneal import HARD
 from mdlcad.placement.grid import inside
 from mdlcad.placement.keep import PRICES, place_kept
 from mdlcad.placement.lattice import Lattice, lattices, make_lattice, place_ports
@@ -24,8 +25,10 @@ from mdlcad.routing.router import route
 
 MOST_MOVED = 0.1
 """Share of the kept masses that may move before a larger lattice is looked at."""
-MOST_LARGER = 6
+MOST_LARGER = 4
 """Steps in size, of ``STEP`` each, above the earlier one."""
+SAME_TRIES = 3
+"""Seeds to try at each price on the earlier lattice."""
 SHIFT = 2
 """How many columns or rows the old lattice is shifted at most to fit onto a new one."""
 
@@ -70,10 +73,12 @@ def place_and_route_like(
         kept = kept_of(before, network, site.slots)
         layout = before.layout if site.same else replace(before.layout, trunks=())
         tried: list[Placement] = []
-        for price in PRICES:
-            result = place_kept(network, site.lattice, rules, kept, price, seed)
+        for price, offset in product(PRICES, range(SAME_TRIES if site.same else 1)):
+            result = place_kept(network, site.lattice, rules, kept, price, seed + offset)
             moved = len(old) - len(site.slots) + _count_moved(site.slots, result.placement)
-            tell(f"{site.lattice.mm_per_grid:.3f} mm per grid unit: {moved} of {len(old)} kept masses moved")
+            conflicts = round(result.cost / HARD)
+            words = f"{moved} of {len(old)} kept masses moved, about {conflicts} conflicts left"
+            tell(f"{site.lattice.mm_per_grid:.3f} mm per grid unit: {words}")
             if result.cost > 0 or result.placement in tried or (best is not None and moved >= best[0]):
                 continue
             tried.append(result.placement)
@@ -121,7 +126,7 @@ def _sites(
             (-len(site.slots), abs(len(site.lattice.row_y) - len(before.placement.row_y)), index)
             for index, site in enumerate(sites)
         )
-        for _, _, index in ranks[:2]:
+        for _, _, index in ranks[:1]:
             yield sites[index]
 
 
