@@ -33,6 +33,7 @@ def make_report(
         drc=state.rules.counts if state.rules else None,
         mechanics=mechanics_of(state.sizing, state.carriers),
         drive=state.drive,
+        margins=state.margins,
         extent_mm=extent_of(bodies) if bodies else None,
         plates=tuple(plates_of(bodies)) if bodies else (),
         tiles=_tiles(bodies, job) if bodies else None,

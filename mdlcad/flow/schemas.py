@@ -25,6 +25,7 @@ from mdlcad.routing.layout import Layout
 from mdlcad.scenario.result import ScenarioResult
 from mdlcad.signoff.extraction import BuiltDevice
 from mdlcad.signoff.lvs import LvsResult
+from mdlcad.signoff.margins import Margins
 from mdlcad.signoff.summary import DesignRules
 from mdlcad.synthesis.netlist import Netlist
 
@@ -45,6 +46,7 @@ ARTEFACTS: dict[str, Any] = {
     "drive": DriveLoads,
     "extraction": tuple[LvsResult, Proof],
     "built": BuiltDevice,
+    "margins": Margins,
     "report": Report,
     "result": ScenarioResult,
     "diff": Comparison,

@@ -25,6 +25,7 @@ from mdlcad.routing.driver import SMALLEST, Size
 from mdlcad.routing.layout import Layout
 from mdlcad.signoff.extraction import BuiltDevice
 from mdlcad.signoff.lvs import LvsResult
+from mdlcad.signoff.margins import Margins
 from mdlcad.signoff.summary import DesignRules
 from mdlcad.synthesis.netlist import Netlist
 
@@ -99,6 +100,7 @@ class State:
     lvs: LvsResult | None = None
     extracted: Proof | None = None
     built: BuiltDevice | None = None
+    margins: Margins | None = None
 
 
 def narrowed(state: State, fields: tuple[str, ...]) -> State:

@@ -36,6 +36,7 @@ from mdlcad.signoff.drawn import measure_device
 from mdlcad.signoff.extraction import Built, BuiltDevice
 from mdlcad.signoff.geometry import check_geometry
 from mdlcad.signoff.lvs import LvsResult, compare, recover
+from mdlcad.signoff.margins import Margins, find_margins, grid_of
 from mdlcad.signoff.readback import read_step
 from mdlcad.signoff.sections import read_cut
 from mdlcad.signoff.summary import DesignRules
@@ -175,6 +176,13 @@ def _lvs(job: Job, state: State, progress: Progress) -> State:
 
 def _keep_built(job: Job, state: State) -> None:
     write_atomic(job.folder / "built.json", to_json(state.built))
+
+
+def _margins(job: Job, state: State, progress: Progress) -> State:
+    drawn, process = need(state.built).drawn, job.process
+    built = Built(drawn, need(state.network), need(state.sizing), state.carriers, process, grid_of(process))
+    reference = build_reference(need(state.device))
+    return replace(state, margins=find_margins(built, reference, process, job.seed, job.workers))
 
 
 def _picture(job: Job, state: State, progress: Progress) -> State:
@@ -384,6 +392,19 @@ STEPS: tuple[Step, ...] = (
         _restore_extraction,
         ("process", "seed"),
         draw=_keep_built,
+    ),
+    Step(
+        "margins",
+        ("device", "network", "sizing", "carriers", "built"),
+        ("margins",),
+        _margins,
+        lambda s: (
+            f"walls +{need(s.margins).thicker_um:.0f} -{need(s.margins).thinner_um:.0f} um, at random "
+            f"{need(s.margins).random_um:.0f} um; the machine repeats to {need(s.margins).repeatability_um:.0f} um"
+        ),
+        lambda s: to_json(s.margins),
+        from_artefact("margins", Margins),
+        ("process", "seed"),
     ),
     Step(
         "views",

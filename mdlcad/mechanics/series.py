@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import numpy as np
 from scipy.optimize import brentq
 
 from mdlcad.errors import UsageError
@@ -177,13 +178,10 @@ def frame_of(plan: SpringPlan, sheet: Sheet) -> SpringFrame:
 
 @dataclass(frozen=True, slots=True)
 class SpringStiffness:
-    """Of the end block: ``push`` in x, N/mm, and ``turn``, N mm/rad, as it is held by the beams; ``across`` in y, N/mm,
-    of the spring alone and not turning. ``strain``: largest, per mm of push."""
+    """Of the end block, N/mm: ``push`` in x, as it is held by the beams; ``across`` in y, alone and not turning."""
 
     push: float
-    turn: float
     across: float
-    strain: float
 
 
 def spring_stiffness(made: SpringFrame, beams_y: float, beams_turn: float) -> SpringStiffness:
@@ -192,7 +190,22 @@ def spring_stiffness(made: SpringFrame, beams_y: float, beams_turn: float) -> Sp
     Args:
         beams_y, beams_turn: stiffness of those beams, N/mm and N mm/rad (the shuttle at rest).
     """
-    springs = [Spring(dof(0, Y), beams_y), Spring(dof(0, TURN), beams_turn)]
+    block = [dof(0, i) for i in (X, Y, TURN)]
+    matrix = Frame(made.nodes, made.beams).condense(block, [dof(made.pin, i) for i in (X, Y, TURN)])
+    across = matrix[1, 1] - matrix[0, 1] ** 2 / matrix[0, 0]
+    held = matrix[1:, 1:] + np.diag([beams_y, beams_turn])
+    push = matrix[0, 0] - matrix[0, 1:] @ np.linalg.solve(held, matrix[1:, 0])
+    return SpringStiffness(float(push), float(across))
+
+
+def _solve(process: Process, law: UnitLaw, wall: float, height: float, clear: float) -> tuple[float, float, float]:
+    """Stiffness (N/mm), strain per mm and turning stiffness of the end block (N mm/rad) of the spring's frame.
+
+    The end block is free to turn and to move in y against the beams it ends.
+    """
+    made = spring_frame(process, wall, height, clear)
+    # what the pair of beams holds the end block by (the shuttle at rest)
+    springs = [Spring(dof(0, Y), law.beam_stiffness / 2.0), Spring(dof(0, TURN), law.shuttle_turn / 2.0)]
     frame = Frame(made.nodes, made.beams, springs)
     pin = [dof(made.pin, i) for i in (X, Y, TURN)]
     solution = frame.solve(dict.fromkeys(pin, 0.0) | {dof(0, X): 1.0})
@@ -201,12 +214,4 @@ def spring_stiffness(made: SpringFrame, beams_y: float, beams_turn: float) -> Sp
         moment = max(abs(value) for value in frame.end_moments(beam, solution))
         strain = max(strain, moment * width / (2.0 * beam.bending))
     turning = float(frame.condense([dof(0, TURN)], pin)[0, 0])
-    across = float(Frame(made.nodes, made.beams).condense([dof(0, Y)], [*pin, dof(0, TURN)])[0, 0])
-    return SpringStiffness(float(solution.reactions[dof(0, X)]), turning, across, strain)
-
-
-def _solve(process: Process, law: UnitLaw, wall: float, height: float, clear: float) -> tuple[float, float, float]:
-    """Stiffness (N/mm), strain per mm and turning stiffness of the end block (N mm/rad) of the spring's frame."""
-    made = spring_frame(process, wall, height, clear)
-    found = spring_stiffness(made, law.beam_stiffness / 2.0, law.shuttle_turn / 2.0)
-    return found.push, found.strain, found.turn
+    return float(solution.reactions[dof(0, X)]), strain, turning

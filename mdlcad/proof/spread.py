@@ -105,7 +105,7 @@ def estimate_yield(
         built = system_of(device)
         if _behaves(device, reference, built, itinerary, timing, steps):
             return True, None
-        return False, _first_slip(nominal, _all_bits(device, reference, built, itinerary, timing, steps), system)
+        return False, first_slip(nominal, _all_bits(device, reference, built, itinerary, timing, steps), system)
 
     with ThreadPoolExecutor(workers) as pool:
         outcomes = []
@@ -163,7 +163,7 @@ def _all_bits(
     return decode(system, masses, run.readings)
 
 
-def _first_slip(nominal: NDArray[np.uint8], found: NDArray[np.uint8], system: System) -> str | None:
+def first_slip(nominal: NDArray[np.uint8], found: NDArray[np.uint8], system: System) -> str | None:
     """The mass that first reads otherwise than a decided nominal one; ties in a cycle go to the earlier phase."""
     masses = np.arange(len(system.names))
     slipped = ((nominal != found) & (nominal != UNDECIDED)).any(axis=2)

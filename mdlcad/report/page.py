@@ -142,7 +142,11 @@ def verdict_of(report: Report) -> Verdict:
         ]
         return Verdict("partial", f"Stopped after its stage “{last}”, as asked", tuple(lacking))
     warned = sum((report.drc or {}).values())
-    more = (f"{warned} warning{'s' if warned > 1 else ''} of the design rules, see below",) if warned else ()
+    more: tuple[str, ...] = ()
+    if warned:
+        more += (f"{warned} warning{'s' if warned > 1 else ''} of the design rules, see below",)
+    if report.margins is not None and not report.margins.machine_holds:
+        more += (f"as drawn it works, but fabrication may spoil it: {report.margins.words()}",)
     return Verdict("good", "All of it holds", more)
 
 

@@ -7,6 +7,7 @@ from enum import StrEnum
 
 from mdlcad.mechanics.drive import DriveLoads
 from mdlcad.parts.bom import Bom
+from mdlcad.signoff.margins import Margins
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,6 +131,7 @@ class Report:
         stages: those that ended well, in order.
         stopped: None if all stages that were asked for (``--to``) ran.
         failures: what does not hold, in words with numbers; empty if all that was checked holds.
+        margins: largest errors of dimensions at which the device as drawn still proves right.
         files: SHA-256 by path, of every file but report.json itself and report.html, which is made from it.
     """
 
@@ -158,6 +160,7 @@ class Report:
     failures: tuple[str, ...] = ()
     bom: Bom | None = None
     drive: DriveLoads | None = None
+    margins: Margins | None = None
     placer: str | None = None
     seeds: Seeds | None = None
     like: Likeness | None = None

@@ -14,6 +14,7 @@ from mdlcad.parts.bom import Bom, Profile
 from mdlcad.proof.outcome import Proof
 from mdlcad.report.report import Report
 from mdlcad.signoff.drc import Finding
+from mdlcad.signoff.margins import Margins
 from mdlcad.signoff.summary import DesignRules
 
 # What a rule of the design rules asks, and the unit of its value. A rule that is not here is shown by its name alone.
@@ -143,6 +144,7 @@ def margin_rows(
         )
         for name, proof in proofs
     ]
+    rows += _fabrication_rows(report.margins)
     mechanics = report.mechanics
     if mechanics is None or process is None or sizing is None:
         return rows
@@ -162,6 +164,34 @@ def margin_rows(
     )
     rows.append(Margin("compensation", f"{mechanics.compensation_difference_worst:.2f}", "", about, None))
     return rows
+
+
+def _fabrication_rows(margins: Margins | None) -> list[Margin]:
+    """What dimensions may be off by, against what the machine repeats to."""
+    if margins is None:
+        return []
+    limit = f"machine: ±{margins.repeatability_um:g} µm"
+    checked = f"{margins.decisions} decisions of {margins.samples} devices a run"
+    weak = f"; {margins.weakest} gives way first" if margins.weakest else ""
+    size = ""
+    if not margins.machine_holds and margins.throw_unit_mm:
+        size = f"; throw_unit {margins.throw_unit_mm:g} mm, all of the unit scaled alike, would do"
+    return [
+        Margin(
+            "walls, all alike",
+            f"+{margins.thicker_um:g} −{margins.thinner_um:g} µm",
+            limit,
+            f"largest error of all walls at which the device as drawn still proves right; {checked}",
+            margins.repeatability_um <= margins.uniform_um,
+        ),
+        Margin(
+            "dimensions, at random",
+            f"±{margins.random_um:g} µm",
+            limit,
+            f"every wall, pin and post off by its own amount; {checked}{weak}{size}",
+            margins.repeatability_um <= margins.random_um,
+        ),
+    ]
 
 
 def port_rows(device: Device) -> list[PortRow]:
