@@ -58,7 +58,10 @@ def write_picture(
     plotter = pyvista.Plotter(off_screen=True, window_size=list(size))
     plotter.set_background("white")
     mesh = device_mesh(bodies, lift_mm)
-    plotter.add_mesh(mesh, scalars="rgb", rgb=True, smooth_shading=False, specular=0.1, ambient=0.25)
+    # one light beside the camera: no face is black and none is washed out
+    plotter.remove_all_lights()
+    plotter.add_light(pyvista.Light(position=(-0.5, 0.7, 1.0), light_type="camera light", intensity=1.0))
+    plotter.add_mesh(mesh, scalars="rgb", rgb=True, smooth_shading=False, ambient=0.4, diffuse=0.6)
     plotter.enable_anti_aliasing("ssaa")
     if from_above:
         plotter.view_xy()
