@@ -99,6 +99,8 @@ def _kind(name: str) -> str:
 
 _RIGID = ("rung", "trunk", "tab", "pin")
 _FLEXURES = ("coupler", "rocker", "bias")
+_CARRIED = ("rung", "trunk", "tab", "pin", "coupler", "rocker", "bias")
+"""What moves with a shuttle, clock pins apart."""
 
 
 def recover(bodies: Sequence[ReadBody]) -> Recovered:
@@ -109,7 +111,7 @@ def recover(bodies: Sequence[ReadBody]) -> Recovered:
     rigid.add_nodes_from(index for index, kind in enumerate(kinds) if kind in _RIGID)
     rigid.add_edges_from((a, b) for a, b in pairs if kinds[a] in _RIGID and kinds[b] in _RIGID)
     group = {index: number for number, part in enumerate(nx.connected_components(rigid)) for index in part}
-    problems: list[str] = []
+    problems = _jams(bodies, pairs)
     owner: dict[int, set[str]] = {}
     clock_groups: set[int] = set()
     for a, b in pairs:
@@ -134,6 +136,34 @@ def recover(bodies: Sequence[ReadBody]) -> Recovered:
         for number, mass in shuttle.items()
     }
     return Recovered(units, tuple(connections), tuple(biases), tuple(problems), carried)
+
+
+def _jams(bodies: Sequence[ReadBody], pairs: list[tuple[int, int]]) -> list[str]:
+    """What moves and touches what stands still or moves another way: a slot or notch is missing, or a pin misplaced."""
+    clocks = {body.name.removeprefix("handle.") for body in bodies if body.name.startswith("handle.")}
+    driven: dict[str, list[str]] = {}
+    found = []
+    for a, b in pairs:
+        for one, other in ((bodies[a].name, bodies[b].name), (bodies[b].name, bodies[a].name)):
+            still = _kind(other) == "frame" or ("." not in other and other not in clocks)
+            if one.startswith("pin.clock."):
+                if other in clocks:
+                    driven.setdefault(one, []).append(other)
+                elif still or _kind(other) in _CARRIED:
+                    found.append(f"jam: {one} meets {other}")
+            elif _kind(one) in _CARRIED and (still or other in clocks or _kind(other) == "handle"):
+                found.append(f"jam: {one} meets {other}")
+            elif _kind(one) == "post" and _kind(other) in _RIGID:
+                found.append(f"jam: {other} meets {one}")
+            elif _kind(one) == "post" and other in clocks:
+                found.append(f"jam: {one} meets {other}, where a slot should be")
+    for pin, plates in sorted(driven.items()):
+        if len(plates) > 1:
+            found.append(f"jam: {pin} meets {' and '.join(sorted(plates))}: one of them lacks its slot")
+    loose = sorted(
+        body.name for body in bodies if clocks and body.name.startswith("pin.clock.") and body.name not in driven
+    )
+    return found + [f"open: {name} meets no clock plate" for name in loose]
 
 
 def _flexures(

@@ -8,11 +8,9 @@ from shapely import Polygon, box
 from shapely.affinity import translate
 
 from mdlcad.errors import SignoffError
-from mdlcad.export.drawing import svg_plate
 from mdlcad.export.step import step_assembly
 from mdlcad.mechanics.leaves import LargeLeaf, LeafKind, chain_of
-from mdlcad.parts.body import Body, BodyKind
-from mdlcad.parts.plates import plates_of
+from mdlcad.parts.body import Body
 from mdlcad.parts.stiffness import carrier_stiffnesses
 from mdlcad.signoff.drawn import Drawn, measure_device
 from mdlcad.signoff.extraction import Built
@@ -20,32 +18,7 @@ from mdlcad.signoff.lvs import compare, recover
 from mdlcad.signoff.measure import chain_of_leaf, measure_leaf, measure_unit, spans_at_x
 from mdlcad.signoff.numbers import Scale, bias_numbers
 from mdlcad.signoff.readback import ReadBody, read_step
-from mdlcad.signoff.sections import read_cut
-from tests.parts.device import Device, small_device
-
-
-@pytest.fixture(scope="module")
-def device() -> Device:
-    return small_device()
-
-
-@pytest.fixture(scope="module")
-def bodies(device: Device) -> dict[str, Body]:
-    return {body.name: body for body in device.bodies()}
-
-
-@pytest.fixture(scope="module")
-def files(device: Device, bodies: dict[str, Body], tmp_path_factory: pytest.TempPathFactory):
-    """The small device's STEP file, read back, and its plates' drawings."""
-    folder = tmp_path_factory.mktemp("small")
-    (folder / "plates").mkdir()
-    # what neither moves nor holds a flexure takes the most time to write and to read
-    still = (BodyKind.FRAME, BodyKind.BASE, BodyKind.COVER, BodyKind.CLOCK, BodyKind.SPACER)
-    moving = [body for body in bodies.values() if body.kind not in still]
-    (folder / "small.step").write_bytes(step_assembly("small", moving))
-    for plate, members in plates_of(list(bodies.values())).items():
-        (folder / "plates" / f"{plate}.svg").write_bytes(svg_plate(plate, members))
-    return read_step(folder / "small.step"), read_cut(folder, device.process)
+from tests.parts.device import Device
 
 
 def built_of(device: Device, found: tuple[ReadBody, ...], cut: dict[str, Polygon]) -> Built:

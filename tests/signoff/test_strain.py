@@ -8,12 +8,7 @@ from mdlcad.mechanics.leaves import LeafKind
 from mdlcad.mechanics.sizing import Sizing
 from mdlcad.mechanics.strains import check_strain, reach_at
 from mdlcad.signoff.geometry import check_geometry
-from tests.parts.device import Device, small_device
-
-
-@pytest.fixture(scope="module")
-def device() -> Device:
-    return small_device()
+from tests.parts.device import Device
 
 
 def found(device: Device, sizing: Sizing) -> set[tuple[str, str]]:
