@@ -11,7 +11,7 @@ import pytest
 from mdlcad.artefact import checksum, to_json
 from mdlcad.cli import FAILS, HOLDS, UNUSABLE, main
 from mdlcad.errors import SignoffError
-from mdlcad.flow import steps
+from mdlcad.flow import placing, steps
 from mdlcad.flow.inputs import _SETTINGS
 from mdlcad.flow.state import State, narrowed
 from mdlcad.parts.store import records_of
@@ -138,7 +138,7 @@ def test_a_build_that_does_not_hold_goes_beside_the_one_that_does(early, monkeyp
     def jammed(*arguments):
         raise SignoffError("channel 1: no legal tracks for 7 nets")
 
-    monkeypatch.setattr(steps, "place_and_route", jammed)
+    monkeypatch.setattr(placing, "place_and_route", jammed)
     before = (early / "report.json").read_bytes()
     assert main(["build", str(VOTER), "-o", str(early)]) == FAILS
     assert (early / "report.json").read_bytes() == before
