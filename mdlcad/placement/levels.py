@@ -56,8 +56,8 @@ def _columns(levels: list[list[int]], lattice: Lattice) -> Ints:
     held = np.zeros(len(rooms), np.int64)
     at, placed, due = 0, 0, rooms[0] * share
     for level in levels:
-        # a level stands in the next column if most of it would be beyond this one's share
-        while at + 1 < len(rooms) and placed + len(level) / 2 > due:
+        # a level stands in the next column (no further) if most of it would be beyond this one's share
+        if at + 1 < len(rooms) and placed + len(level) / 2 > due:
             at += 1
             due += rooms[at] * share
         for mass in level:

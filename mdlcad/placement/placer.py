@@ -20,9 +20,9 @@ from mdlcad.placement.state import State, start
 MOVES_PER_MASS = 8000
 SIDE_MOVES_PER_MASS = 2000
 HOT, COLD = 8.0, 0.5
-LARGE = 400
+LARGE = 100
 """Networks of more masses start level by level and anneal from WARM, LARGE_MOVES and LARGE_SIDE_MOVES a mass."""
-WARM, LARGE_MOVES, LARGE_SIDE_MOVES = 2.0, 400, 200
+WARM, LARGE_MOVES, LARGE_SIDE_MOVES = 1.5, 1500, 200
 
 
 @dataclass(frozen=True, slots=True)

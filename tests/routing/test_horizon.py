@@ -1,0 +1,23 @@
+import pytest
+
+from mdlcad.routing import horizon, route
+from mdlcad.routing.check import check_layout
+from tests.routing.made import good
+
+
+def test_a_channel_routed_in_windows_is_legal_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    network, rules, placement, whole = good()
+    monkeypatch.setattr(horizon, "MOST_TRUNKS", 0)
+    monkeypatch.setattr(horizon, "ROWS", 2)
+    solved: list[int] = []
+    solve = horizon.solve
+
+    def counted(channel, rules, seed):
+        solved.append(channel.index)
+        return solve(channel, rules, seed)
+
+    monkeypatch.setattr(horizon, "solve", counted)
+    layout = route(network, placement, rules, 1)
+    assert len(solved) > len(placement.column_x) + 1  # a channel took several windows
+    assert check_layout(network, placement, layout, rules) == ()
+    assert {leaf.coupling for leaf in layout.couplers} == {leaf.coupling for leaf in whole.couplers}
