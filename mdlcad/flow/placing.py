@@ -8,6 +8,7 @@ seed. On the program's grid, where there is no area, it is: fewer moved, fewer c
 from __future__ import annotations
 
 import multiprocessing
+from collections import Counter
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
@@ -223,8 +224,14 @@ def likeness(work: Work, result: Placed | GridPlacement) -> Likeness:
     )
     old = {names.get(mass, mass): seat for mass, seat in before.items()}
     kept = [mass for mass in after if mass in old]
-    moved = sum(old[mass] != after[mass] for mass in kept)
-    return Likeness(earlier.checksum, len(kept), moved, len(after) - len(kept), len(before) - len(kept))
+    shifts = Counter((after[mass][0] - old[mass][0], after[mass][1] - old[mass][1]) for mass in kept)
+    # on another lattice all may stand some rows further, which moves none against another
+    shift, stayed = min(shifts.items(), key=lambda item: (-item[1], item[0]), default=((0.0, 0.0), 0))
+    if isinstance(result, GridPlacement):
+        shift, stayed = (0.0, 0.0), shifts[0.0, 0.0]
+    return Likeness(
+        earlier.checksum, len(kept), len(kept) - stayed, len(after) - len(kept), len(before) - len(kept), shift
+    )
 
 
 def _seats(placement: Placement | GridPlacement | None) -> dict[str, tuple[float, float]]:

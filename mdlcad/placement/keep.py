@@ -31,8 +31,8 @@ PRICES = (1e6, HARD, HARD / 2)
 second on a mass moves to mend one; for less, masses would move for shorter wires."""
 SIDE_PRICE = HARD / 4
 """What it costs to serve a coupling, or to hang a bias leaf, on the other side."""
-WARM, COOL = 4.0, 0.3
-"""First and last temperature: warm enough to pass a broken rule on the way, too cool to forget the start."""
+WARM, COOL = 8.0, 0.4
+"""First and last temperature: warm enough to pass a broken rule on the way, and in the end too cool to leave home."""
 COLUMN_APART, ROW_APART, OTHER_COLUMN = 4.0, 1.0, 1000.0
 """How far a new mass counts as from its neighbours, for a column and for a row between them; and from its column."""
 
@@ -55,19 +55,28 @@ class Kept:
 def place_kept(
     network: Network, lattice: Lattice, rules: LayoutRules, kept: Kept, price: float, seed: int
 ) -> PlaceResult:
-    """Place ``network`` with every kept mass in its slot, or elsewhere for ``price``. Same arguments, same result."""
+    """Place ``network`` with every kept mass in its slot, or elsewhere for ``price``. Same arguments, same result.
+
+    At the first of ``PRICES`` only those move whose couplings do not reach from their column.
+    """
     problem = build(network, lattice, rules)
     home = _homes(network, lattice, rules, kept)
     at, stiff = home[: len(network.masses), 0], price == PRICES[0]
     whole = stiff and bool(np.all(at >= 0))
-    slot_of = at if whole else _seated(problem, at, _columns(problem, lattice, at, stiff, seed))
+    slot_of = at.copy() if whole else _seated(problem, at, _columns(problem, lattice, at, stiff, seed))
+    if stiff:
+        # who cannot reach its neighbours from its column has to leave it, whatever that costs
+        home[: len(at), 0] = np.where(problem.slot[slot_of, 0] == problem.slot[np.maximum(at, 0), 0], at, -1)
     state, source = _held(problem, slot_of, home, price, seed)
     if whole:
         moves = 0  # nobody is new: there is nothing to look for
     else:
         moves = MOVES_PER_MASS * len(network.masses)
     cost = anneal(problem, state, source, moves, WARM, COOL, False)
-    return PlaceResult(placement_of(network, lattice, state.mass[:, 0], seed), float(cost))
+    slots = state.mass[:, 0]
+    if cost == 0 and not whole:
+        slots = _sent_home(problem, state, home, seed)
+    return PlaceResult(placement_of(network, lattice, slots, seed), float(cost))
 
 
 def keep_sides(
@@ -121,10 +130,32 @@ def _all_known(problem: Problem, state: State, home: Ints) -> bool:
     return bool(np.all(sides[within] >= 0) and np.all(biases[biased] >= 0))
 
 
+def _sent_home(problem: Problem, state: State, home: Ints, seed: int) -> Ints:
+    """(M,) the slots of a sound placement, with every mass home again that breaks no rule there."""
+    slot_of, at = state.mass[:, 0].copy(), home[: len(state.mass), 0]
+    again = True
+    while again:
+        again = False
+        for mass in np.flatnonzero((at >= 0) & (slot_of != at)).tolist():
+            trial = slot_of.copy()
+            trial[slot_of == at[mass]] = slot_of[mass]
+            trial[mass] = at[mass]
+            tried, source = _held(problem, trial, home, 0.0, seed)
+            tried.mass[:, 1], tried.side[:] = state.mass[:, 1], state.side
+            if anneal(problem, tried, source, 0, WARM, COOL, False) == 0:
+                slot_of, again = trial, True
+    return slot_of
+
+
 def _columns(problem: Problem, lattice: Lattice, home: Ints, held: bool, seed: int) -> Ints | None:
-    """(M,) a column for every mass, its home's where that can be (with ``held``: always); None if none were found."""
+    """(M,) a column for every mass, its home's where that can be; None if none were found.
+
+    Args:
+        held: to look first whether all homes can be kept.
+    """
     homes = [int(problem.slot[slot, 0]) if slot >= 0 else -1 for slot in home.tolist()]
-    found = choose_columns(problem, lattice, seed, homes, held)
+    found = choose_columns(problem, lattice, seed, homes, True) if held else None
+    found = found or choose_columns(problem, lattice, seed, homes)
     return None if found is None else np.array(found, np.int32)
 
 

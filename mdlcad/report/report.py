@@ -101,8 +101,9 @@ class Likeness:
 
     Attributes:
         build: SHA-256 of what was taken from it (of lines "SHA-256  NAME" of its netlist, network, ...).
-        kept: masses that are in both; moved: those of them that are in another slot now.
+        kept: masses that are in both; moved: those of them that are in another slot now, but for the shift.
         new, gone: masses that only this one, or only the earlier one, has.
+        shift: columns and rows by which the whole stands elsewhere on a lattice of another size.
     """
 
     build: str
@@ -110,6 +111,7 @@ class Likeness:
     moved: int
     new: int
     gone: int
+    shift: tuple[float, float]
 
 
 @dataclass(frozen=True, slots=True)

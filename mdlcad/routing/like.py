@@ -25,7 +25,7 @@ from mdlcad.routing.router import route
 
 MOST_MOVED = 0.1
 """Share of the kept masses that may move before a larger lattice is looked at."""
-MOST_LARGER = 4
+MOST_LARGER = 6
 """Steps in size, of ``STEP`` each, above the earlier one."""
 SAME_TRIES = 3
 """Seeds to try at each price on the earlier lattice."""

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import sys
 import tempfile
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -92,7 +93,10 @@ def compare(before: Path, after: Path) -> Stayed:
     whats = [_natures(network) for network in networks]
     same = [name for name, nature in whats[1].items() if whats[0].get(name) == nature]
     places = [{u.mass: u for u in load(folder, "placement.json", Placement).masses} for folder in (before, after)]
-    moved = [n for n in same if (places[0][n].column, places[0][n].row) != (places[1][n].column, places[1][n].row)]
+    steps = {n: (places[1][n].column - places[0][n].column, places[1][n].row - places[0][n].row) for n in same}
+    # on a lattice of another size all may stand some rows further, which moves none against another
+    usual = Counter(steps.values()).most_common(1)[0][0] if steps else (0, 0)
+    moved = [n for n in same if steps[n] != usual]
     apart = [
         n for n in same if abs(places[0][n].x - places[1][n].x) > 0.01 or abs(places[0][n].y - places[1][n].y) > 0.01
     ]
