@@ -55,8 +55,8 @@ def explain(source: Source, found: Token, construct: str, accepted: Sequence[str
 
 
 def shown(text: str) -> str:
-    """``text`` as a message may quote it: short, and without characters that a terminal would obey."""
-    clean = "".join(char if char.isprintable() else "?" for char in text)
+    """``text`` as a message may quote it: short, and without characters that a terminal would obey, told by number."""
+    clean = "".join(char if char.isprintable() else f"<U+{ord(char):04X}>" for char in text)
     return clean if len(clean) <= 40 else clean[:37] + "..."
 
 

@@ -40,7 +40,7 @@ USUAL = Effort()
 def masses_of(netlist: Netlist, library: Library, effort: Effort = USUAL) -> tuple[PlannedMass, ...]:
     """All masses that the mapper plans, ring and twins included."""
     graph, nets = mapper._make_subject(netlist)
-    plan = mapper._make_plan(netlist, library, graph, nets, effort)
+    plan = mapper._make_plan(netlist, library, graph, nets, effort, None)
     return relieve(with_ring(plan)[0], library.gates.load_limit, library.gates.echo_limit)
 
 

@@ -68,6 +68,12 @@ def test_a_right_program_with_mistakes(edits: list[tuple[int, int, str]]) -> Non
     parse_or_refuse(text)
 
 
+def test_a_character_that_cannot_be_shown_is_told_by_its_number() -> None:
+    """Found by the mutated examples: a NUL for the first slash of a comment was shown as a question mark."""
+    with pytest.raises(InputError, match=r"x\.mdl:1:1: error: expected 'mechanicalmodule', found '<U\+0000>'"):
+        parse_device("\0/ a comment\n" + GOOD, "x.mdl")
+
+
 def test_half_of_a_character_pair() -> None:
     with pytest.raises(InputError) as caught:
         parse_device(GOOD.replace('"off"', '"o\ud800"'), "x.mdl")
