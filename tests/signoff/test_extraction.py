@@ -154,7 +154,7 @@ def test_a_bias_leafs_terms_are_the_force_of_its_beams(device: Device, built: Bu
     found = bias_numbers(chain_of_leaf(bias.leaf, bias.sheet), bias.offset, device.sizing.rules.throw, scale)
     leaf = LargeLeaf(chain_of(LeafKind.BIAS, size.leaf.shape, device.process))
     for x in (-1.7, -0.6, 0.0, 1.1, 1.8):
-        force = leaf.force(1.5 * x - size.offset, 0.0) / law.force_unit
+        force = leaf.force(device.process.unit.throw_unit * x - size.offset, 0.0) / law.force_unit
         assert found.bias + found.stiffness * x + found.cubic * x**2 + found.quartic * x**3 == pytest.approx(
             force, abs=0.01
         )
