@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import jinja2
 import msgspec
 
 from mdlcad.compare.bodies import read_bodies
@@ -15,6 +14,7 @@ from mdlcad.compare.words import SYMBOLS, counted, verdict_words
 from mdlcad.errors import UsageError
 from mdlcad.mechanics import Sizing
 from mdlcad.placement.placement import Placement
+from mdlcad.report.templates import environment
 from mdlcad.routing.layout import Layout
 
 # a level lists no more than this on the page; the JSON has all
@@ -30,22 +30,19 @@ def page(comparison: Comparison, folder_a: Path, folder_b: Path) -> bytes:
         UsageError: a folder is no build.
     """
     scene, missing = _scene(open_build(folder_a), open_build(folder_b))
-    environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("mdlcad.compare"),
-        autoescape=True,
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    text = environment.get_template("diff.html").render(
-        comparison=comparison,
-        verdict=verdict_words(comparison),
-        symbols=SYMBOLS,
-        counted=counted,
-        most=MOST_CHANGES,
-        missing=missing,
-        scene=_data(scene) if scene is not None else None,
-        marks=_data(_marks(comparison)),
+    text = (
+        environment("mdlcad.compare", "templates")
+        .get_template("diff.html")
+        .render(
+            comparison=comparison,
+            verdict=verdict_words(comparison),
+            symbols=SYMBOLS,
+            counted=counted,
+            most=MOST_CHANGES,
+            missing=missing,
+            scene=_data(scene) if scene is not None else None,
+            marks=_data(_marks(comparison)),
+        )
     )
     return text.encode()
 

@@ -16,7 +16,7 @@ from mdlcad.errors import InputError, SignoffError, UsageError
 from mdlcad.flow.earlier import load_earlier
 from mdlcad.flow.folder import REPORT, new_folder, resting_place
 from mdlcad.flow.inputs import digests_of, inputs_of
-from mdlcad.flow.kept import Earlier, Reuse, earlier_build
+from mdlcad.flow.kept import Reuse, Standing, standing_build
 from mdlcad.flow.plans import steps_with
 from mdlcad.flow.result import make_report
 from mdlcad.flow.state import Job, Outlines, State, joined, narrowed
@@ -94,7 +94,7 @@ def build(request: Request, say: Callable[[str], None]) -> tuple[Path, list[str]
         None if request.like is None else load_earlier(request.like, library, process),
     )
     state = _load(job, loaded)
-    earlier = earlier_build(place, request.reuse)
+    standing = standing_build(place, request.reuse)
     made: dict[str, str] = {}
     records: list[StageRecord] = []
     stopped: Stopped | None = None
@@ -112,7 +112,7 @@ def build(request: Request, say: Callable[[str], None]) -> tuple[Path, list[str]
                 break
             inputs = inputs_of(step, job, made)
             try:
-                state, record = _kept(step, job, state, earlier, inputs, say) or _run(step, job, state, inputs, say)
+                state, record = _kept(step, job, state, standing, inputs, say) or _run(step, job, state, inputs, say)
             except SignoffError as problem:
                 stopped = _stopped(step, problem, folder)
                 break
@@ -198,11 +198,11 @@ def _written(step: Step, job: Job, state: State) -> StageRecord:
 
 
 def _kept(
-    step: Step, job: Job, state: State, earlier: Earlier | None, inputs: str, say: Callable[[str], None]
+    step: Step, job: Job, state: State, standing: Standing | None, inputs: str, say: Callable[[str], None]
 ) -> tuple[State, StageRecord] | None:
-    """The state with what ``step`` made in the earlier build; None if that ran on other inputs or is not whole."""
+    """The state with what ``step`` made in the standing build; None if that ran on other inputs or is not whole."""
     began = time.perf_counter()
-    old = None if earlier is None else earlier.copy(step.name, inputs, job.folder)
+    old = None if standing is None else standing.copy(step.name, inputs, job.folder)
     if old is None:
         return None
     try:

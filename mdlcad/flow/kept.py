@@ -20,7 +20,7 @@ class Reuse(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Earlier:
+class Standing:
     """The build in a place: its stages by name, and the SHA-256 of its files."""
 
     folder: Path
@@ -59,7 +59,7 @@ class Earlier:
         return data if checksum(data) == self.files[file] else None
 
 
-def earlier_build(place: Path, reuse: Reuse) -> Earlier | None:
+def standing_build(place: Path, reuse: Reuse) -> Standing | None:
     """The build at ``place``; None if there is none, if its report cannot be read, or if all is to be made anew."""
     if reuse is Reuse.FRESH:
         return None
@@ -67,4 +67,4 @@ def earlier_build(place: Path, reuse: Reuse) -> Earlier | None:
         report = load(place, REPORT, Report)
     except UsageError:
         return None
-    return Earlier(place, {record.name: record for record in report.stages}, report.files)
+    return Standing(place, {record.name: record for record in report.stages}, report.files)

@@ -22,6 +22,7 @@ from mdlcad.network.matching import renamed_masses
 from mdlcad.network.model import Network
 from mdlcad.parts.stiffness import carrier_faults, carrier_stiffnesses
 from mdlcad.placement.keep_grid import place_on_grid_like
+from mdlcad.placement.lattice import outline_at
 from mdlcad.placement.names import PlacerName
 from mdlcad.placement.placement import Placement
 from mdlcad.placement.placers import Placer
@@ -201,7 +202,6 @@ def _device(work: Work, seed: int, progress: Progress) -> Placed:
 def _same_frame(work: Work, placement: Placement) -> bool:
     """Whether boundary, ports and scale are those of ``placement``."""
     scale = placement.mm_per_grid
-    outline = tuple((round(x * scale, 6), round(y * scale, 6)) for x, y in work.boundary)
     places = {place.bit: place for place in work.ports}
     ports = all(
         (port.x, port.y) == (round(places[port.bit].x * scale, 6), round(places[port.bit].y * scale, 6))
@@ -209,7 +209,7 @@ def _same_frame(work: Work, placement: Placement) -> bool:
         if port.bit in places
     )
     wanted = work.size.pitch in (None, scale) and scale <= work.size.most(work.boundary) + 1e-9
-    return wanted and ports and outline == placement.boundary
+    return wanted and ports and outline_at(work.boundary, scale) == placement.boundary
 
 
 def likeness(work: Work, result: Placed | GridPlacement) -> Likeness:

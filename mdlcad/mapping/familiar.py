@@ -184,8 +184,7 @@ class _Earlier:
 
     def _gated(self, name: str) -> bool:
         """Whether a mass has the tick, or the tick under a load, among its inputs."""
-        kinds = {MassKind.TICK}
-        return any(self._masses[item.source].kind in kinds for item in self._sources[name])
+        return any(self._masses[item.source].kind is MassKind.TICK for item in self._sources[name])
 
     def _sign(self, name: str) -> _Sign | None:
         table = self._table(name)

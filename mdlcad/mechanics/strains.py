@@ -77,14 +77,14 @@ def unit_strains(
 
 def reach_at(network: Network, peaks: Mapping[str, float], p: float) -> dict[str, float]:
     """Largest |x| of every mass while its clock wave is at ``p`` (0 to 2); at most its peak."""
+    if p == 2.0:
+        return dict(peaks)
     pushes = {mass.name: abs(mass.bias) for mass in network.masses}
     for port in network.sensors:
         pushes[port.mass] += SENSOR_FORCE
     for coupling in network.couplings:
         pushes[coupling.source] += abs(coupling.strength) * peaks[coupling.target]
         pushes[coupling.target] += abs(coupling.strength) * peaks[coupling.source]
-    if p == 2.0:
-        return dict(peaks)
     return {
         mass.name: min(peaks[mass.name], _OVERSHOOT * _pushed_to(mass, p, pushes[mass.name])) for mass in network.masses
     }

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from shapely import Polygon, box, prepare
@@ -48,6 +49,11 @@ def place_ports(network: Network, ports: tuple[PortPlace, ...], scale: float) ->
     return tuple(placed)
 
 
+def outline_at(boundary: Iterable[tuple[int, int]], scale: float) -> tuple[tuple[float, float], ...]:
+    """The corners of a boundary on the program's grid in mm, at ``scale`` mm per grid unit."""
+    return tuple((round(x * scale, 6), round(y * scale, 6)) for x, y in boundary)
+
+
 def lattices(
     boundary_grid: tuple[tuple[int, int], ...],
     ports: tuple[PlacedPort, ...],
@@ -56,7 +62,7 @@ def lattices(
     need: int,
 ) -> tuple[Lattice, ...]:
     """Lattices of at least ``need`` slots at ``scale`` mm per grid unit; few columns and wide channels first."""
-    boundary = tuple((round(x * scale, 6), round(y * scale, 6)) for x, y in boundary_grid)
+    boundary = outline_at(boundary_grid, scale)
     inner = inside(boundary, rules)
     if inner.is_empty:
         return ()

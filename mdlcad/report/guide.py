@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import shapely
-from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 from shapely import Polygon
 
@@ -24,6 +23,7 @@ from mdlcad.placement.placement import Placement
 from mdlcad.report.guide_drawing import Mark, Push, draw_start, draw_step
 from mdlcad.report.guide_words import TITLES, Fit, fits_of, words_of
 from mdlcad.report.tables import stock_words
+from mdlcad.report.templates import environment
 
 GUIDE = "guide.html"
 
@@ -83,17 +83,11 @@ def guide(
     steps = assembly_of(bodies, process)
     bom = bill_of_materials(bodies, process)
     settings, drawing = _start(network, sizing, process, placement, bodies, boundary)
-    environment = Environment(
-        loader=PackageLoader("mdlcad.report", "template"),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
+    templates = environment("mdlcad.report", "template")
     phases = network.dynamics.phases
     x0, y0, x1, y1 = boundary.bounds
     fits: tuple[Fit, ...] = fits_of(process, sizing)
-    return environment.get_template("guide.html.j2").render(
+    return templates.get_template("guide.html.j2").render(
         design=network.design,
         process=process,
         size=(x1 - x0, y1 - y0, max(b.z + b.thickness for b in bodies) - min(b.z for b in bodies)),

@@ -10,7 +10,6 @@ from html import escape
 from pathlib import Path
 from typing import TypeVar
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 from mdlcad.artefact import load, write_atomic
@@ -30,6 +29,7 @@ from mdlcad.report.tables import (
     size_rows,
     stock_words,
 )
+from mdlcad.report.templates import environment
 from mdlcad.signoff.lvs import LvsResult
 from mdlcad.signoff.summary import DesignRules
 
@@ -84,16 +84,10 @@ def page(folder: Path) -> str:
     proofs = [("network", proof)] if proof else []
     if extraction is not None:
         proofs.append(("device as drawn", extraction[1]))
-    environment = Environment(
-        loader=PackageLoader("mdlcad.report", "template"),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
+    templates = environment("mdlcad.report", "template")
     layout = drawing(folder / "views" / "layout.svg", f"placement and routing of {escape(report.design)}")
     longest = max((stage.seconds for stage in report.stages), default=0.0)
-    return environment.get_template("report.html.j2").render(
+    return templates.get_template("report.html.j2").render(
         report=report,
         verdict=verdict_of(report),
         device=device,

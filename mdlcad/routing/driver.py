@@ -12,7 +12,7 @@ from mdlcad.errors import Picture, SignoffError
 from mdlcad.mechanics.rules import LayoutRules
 from mdlcad.network.model import Network
 from mdlcad.placement.anneal import HARD
-from mdlcad.placement.lattice import Lattice, lattices, place_ports
+from mdlcad.placement.lattice import Lattice, lattices, outline_at, place_ports
 from mdlcad.placement.placement import Placement
 from mdlcad.placement.placer import MOVES_PER_MASS, PlaceResult
 from mdlcad.placement.placers import ANNEAL, Placer
@@ -168,7 +168,7 @@ class _Search:
         """A placement and its layout at ``scale``, or None."""
         scale = math.floor(scale * 1e4 + 1e-6) / 1e4
         placed = place_ports(self.network, self.ports, scale)
-        outline = tuple((round(x * scale, 6), round(y * scale, 6)) for x, y in self.boundary)
+        outline = outline_at(self.boundary, scale)
         self.empty = Placement(outline, scale, (), (), (), (), placed, self.seed)
         need = math.ceil(SLACK * len(self.network.masses))
         choices = lattices(self.boundary, placed, self.rules, scale, need)

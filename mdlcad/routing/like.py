@@ -12,7 +12,7 @@ from mdlcad.network.model import Network
 from mdlcad.placement.anneal import HARD
 from mdlcad.placement.grid import inside
 from mdlcad.placement.keep import PRICES, place_kept
-from mdlcad.placement.lattice import Lattice, lattices, make_lattice, place_ports
+from mdlcad.placement.lattice import Lattice, lattices, make_lattice, outline_at, place_ports
 from mdlcad.placement.placement import Placement
 from mdlcad.placement.ports import PortPlace
 from mdlcad.routing.driver import SMALLEST, STEP, Size
@@ -143,7 +143,7 @@ def _earlier_lattice(
         return None
     if any(b - a < rules.row_pitch - 1e-6 for a, b in pairwise(row_y)):
         return None
-    outline = tuple((round(x * scale, 6), round(y * scale, 6)) for x, y in boundary)
+    outline = outline_at(boundary, scale)
     inner = inside(outline, rules)
     if inner.is_empty:
         return None

@@ -10,7 +10,7 @@ Errors of fabrication go the same way: the numbers are tabulated over a wall tha
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import astuple, dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -222,8 +222,7 @@ class Built:
             carrier = min(self._stiff.get(item.name, np.inf), 1e9)
             rows = []
             for law in known[key]:
-                found = spring_numbers(law, carrier, self._scale)
-                rows.append([getattr(found, field) for field in found.__dataclass_fields__])
+                rows.append(astuple(spring_numbers(law, carrier, self._scale)))
             tables.append(self._polynomials(rows))
         return tables
 
@@ -340,7 +339,7 @@ def _at(polynomials: Floats, errors: Floats) -> Floats:
 
 
 def _scaled(law: LeafLaw, factor: float) -> LeafLaw:
-    return LeafLaw(*(factor * getattr(law, field) for field in law.__dataclass_fields__))
+    return LeafLaw(*(factor * value for value in astuple(law)))
 
 
 def _leaf_key(item: CouplerDrawn | BiasDrawn) -> tuple[object, ...]:

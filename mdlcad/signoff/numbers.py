@@ -16,6 +16,7 @@ from mdlcad.mechanics.frame import Array
 from mdlcad.mechanics.leaves import LargeLeaf, LeafKind, higher_terms
 from mdlcad.mechanics.reduced import UnitNumbers, force_of
 from mdlcad.mechanics.series import SpringPlan, frame_of, spring_stiffness
+from mdlcad.mechanics.strains import cases_of
 from mdlcad.signoff.measure import BeamSeen, UnitSeen
 
 
@@ -140,10 +141,7 @@ def leaf_law(chain: Chain, kind: LeafKind, throw: float) -> LeafLaw:
     """
     matrix = signal_matrix(chain)
     own, across, far = float(matrix[0, 0]), float(matrix[0, 1]), float(matrix[1, 1])
-    cases: tuple[tuple[float, float], ...] = ((throw, -throw),)
-    if kind is LeafKind.ROCKER:
-        cases += ((throw, throw), (-throw, -throw))
-    terms = higher_terms(LargeLeaf(chain), kind, own, across, cases)
+    terms = higher_terms(LargeLeaf(chain), kind, own, across, cases_of(kind, throw, 0.0))
     return LeafLaw(own, across, far, terms.quartic, terms.common, terms.skew)
 
 

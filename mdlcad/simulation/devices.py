@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mdlcad.simulation.compiled import kernel
+from mdlcad.simulation.schedule import due_steps, interval_at
 
 Floats = NDArray[np.float64]
 
@@ -145,9 +146,7 @@ def advance_devices(
             y[i, lane] = x[i, lane0 + lane]
             u[i, lane] = v[i, lane0 + lane]
             peak[i, lane0 + lane] = abs(y[i, lane])
-    due = np.zeros(period, dtype=np.bool_)
-    for w in range(watched.shape[0]):
-        due[instant[w]] = True
+    due = due_steps(instant, period)
     per = 1.0 / inertia
     span = -1
     for step in range(steps + 1):
@@ -164,9 +163,7 @@ def advance_devices(
         if step == steps:
             break
         last = span
-        span = 0
-        if step >= first_interval:
-            span = min(1 + (step - first_interval) // interval, force.shape[0] - 1)
+        span = interval_at(step, first_interval, interval, force.shape[0])
         if span != last:
             for s in range(driven.shape[0]):
                 for lane in range(BLOCK):

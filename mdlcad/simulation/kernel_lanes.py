@@ -12,6 +12,7 @@ import numpy as np
 
 from mdlcad.simulation.compiled import kernel
 from mdlcad.simulation.plan import Plan
+from mdlcad.simulation.schedule import due_steps, interval_at
 from mdlcad.simulation.simd import larger, loader, store
 from mdlcad.simulation.stages import first_half, second_half
 
@@ -88,9 +89,7 @@ def advance_block(
             c2[e] = plan.strength[0, e] + plan.strength[1, e] * sine + plan.strength[2, e] * cosine
     for e in range(products):
         d2[e] = plan.product_strength[0, e] + plan.product_strength[1, e] * sine + plan.product_strength[2, e] * cosine
-    due = np.zeros(period_steps, dtype=np.bool_)
-    for w in range(watched.shape[0]):
-        due[instant[w]] = True
+    due = due_steps(instant, period_steps)
 
     span = -1
     for step in range(steps + 1):
@@ -110,9 +109,7 @@ def advance_block(
             break
 
         last = span
-        span = 0
-        if step >= first_interval:
-            span = min(1 + (step - first_interval) // interval, force.shape[0] - 1)
+        span = interval_at(step, first_interval, interval, force.shape[0])
         if span != last:
             for s in range(driven.shape[0]):
                 o = driven[s] * _ROW

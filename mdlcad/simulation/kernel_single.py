@@ -13,6 +13,7 @@ import numpy as np
 
 from mdlcad.simulation.compiled import kernel
 from mdlcad.simulation.plan import UNROLLED, Plan
+from mdlcad.simulation.schedule import due_steps, interval_at
 from mdlcad.simulation.simd import evens, larger, loader, odds, paired, store
 from mdlcad.simulation.stages import first_half, second_half
 
@@ -126,9 +127,7 @@ def advance_one(
     _clocked(c_early, plan.strength, entries, 0.0, 0.0, 0.0, 0.0)
     if not plan.modulated:
         c_late = c_early
-    due = np.zeros(period_steps, dtype=np.bool_)
-    for w in range(watched.shape[0]):
-        due[instant[w]] = True
+    due = due_steps(instant, period_steps)
 
     span = -1
     for step in range(steps + 1):
@@ -144,9 +143,7 @@ def advance_one(
             break
 
         last = span
-        span = 0
-        if step >= first_interval:
-            span = min(1 + (step - first_interval) // interval, force.shape[0] - 1)
+        span = interval_at(step, first_interval, interval, force.shape[0])
         if span != last:
             for s in range(driven.shape[0]):
                 i = driven[s]
