@@ -175,7 +175,11 @@ class LargeLeaf:
 
     def force(self, left: float, right: float) -> float:
         """What holds its left end in y, N."""
-        return float(self.at(left, right).reactions[dof(self.chain.left, Y)])
+        return self.hold(self.at(left, right))
+
+    def hold(self, pose: Pose) -> float:
+        """What holds its left end in y in ``pose``, N."""
+        return float(pose.reactions[dof(self.chain.left, Y)])
 
     def strain(self, left: float, right: float) -> float:
         """Largest strain of any wall."""

@@ -52,7 +52,7 @@ class Drawn:
     Attributes:
         units: by mass; unit_sheet: what they are cut from.
         weights: by mass, of all that moves with its shuttle, N.
-        post_radius: of the posts that rockers turn on, mm.
+        post_radius: of the posts that rockers and bias leaves turn on, mm.
     """
 
     units: dict[str, UnitSeen]
@@ -99,7 +99,8 @@ def measure_device(
         mass: sum(_weight(bodies[name], process) for name in (f"unit.{mass}", *recovered.carriers.get(mass, ())))
         for mass in recovered.units
     }
-    posts = [bodies[item.post].section for item in recovered.connections if item.post is not None]
+    pivots = [item.post for item in recovered.connections] + [item.post for item in recovered.biases]
+    posts = [bodies[name].section for name in pivots if name is not None]
     radius = max((math.sqrt(post.area / math.pi) for post in posts), default=0.0)
     return Drawn(units, next(iter(sheets.values())), tuple(couplers), tuple(biases), weights, radius)
 

@@ -26,12 +26,15 @@ from mdlcad.parts.stiffness import CarrierStiffness
 from mdlcad.signoff.drawn import BiasDrawn, CouplerDrawn, Drawn
 from mdlcad.signoff.measure import UnitSeen, chain_of_leaf, thickened
 from mdlcad.signoff.numbers import (
+    BiasNumbers,
+    Bound,
     LeafLaw,
     Scale,
     SpringNumbers,
     bias_numbers,
     fit_unit,
     leaf_law,
+    post_rub,
     spring_numbers,
     unit_numbers,
 )
@@ -63,24 +66,29 @@ class MassBuilt:
     """What a mass of the device has beyond ``network.model``, in units of the network.
 
     Attributes:
-        quartic, cubic: lambda and beta of ``simulation.devices``; friction: bound of dry friction, of F0.
+        quartic, cubic: lambda and beta of ``simulation.devices``.
+        friction: bound of dry friction over x, in F0: f, f' and f'' of ``simulation.devices``, without rockers' posts.
         preload_mm: by how much its series spring is pushed together.
     """
 
     mass: str
     quartic: float
     cubic: float
-    friction: float
+    friction: Bound
     preload_mm: float
 
 
 @dataclass(frozen=True, slots=True)
 class CouplerBuilt:
-    """A coupler or rocker of the device: its numbers, and the stiffness of its carrier, N/mm (0: it has none)."""
+    """A coupler or rocker of the device: its numbers, and the stiffness of its carrier, N/mm (0: it has none).
+
+    ``rub``: R of ``simulation.devices``, the friction of a rocker's eye on its post.
+    """
 
     coupling: str
     carrier: float
     numbers: SpringNumbers
+    rub: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,7 +111,7 @@ class Built:
     Attributes:
         network: masses of the network, couplings as found, with the numbers of the device as drawn.
         system: that, with all that the network's model leaves out, ready to be simulated.
-        friction: by mass, bound of dry friction in units of F0.
+        friction: by mass, bound of dry friction over x in units of F0; rubs: of every coupler found, R.
     """
 
     def __init__(
@@ -126,6 +134,7 @@ class Built:
         self._swing = sizing.law.stroke_per_k * max(abs(mass.k1) for mass in network.masses)
         peaks = {unit.mass: unit.amplitude / process.unit.throw_unit for unit in sizing.units}
         self._reaches = [process.unit.throw_unit * max(reach_at(network, peaks, p).values()) for p in (0.0, 1.0, 2.0)]
+        self._mu = process.stack.friction
         self._drawn = drawn
         self._names = [mass.name for mass in network.masses]
         missing = sorted(set(self._names) - set(drawn.units))
@@ -138,7 +147,7 @@ class Built:
             self._biases = self._bias_tables()
         except ArithmeticError as error:
             raise SignoffError(f"a flexure as drawn cannot be bent as far as it must: {error}") from error
-        self.friction = self._friction(process)
+        self.friction = self._friction(process.stack.friction)
         self._shape(network)
 
     def record(self) -> BuiltDevice:
@@ -151,7 +160,7 @@ class Built:
                 name,
                 trim(float(devices.quartic[at, 0])),
                 trim(float(devices.cubic[at, 0])),
-                trim(self.friction[name]),
+                _trimmed(self.friction[name]),
                 trim(self._drawn.units[name].preload),
             )
             for at, name in enumerate(self.system.names)
@@ -161,8 +170,9 @@ class Built:
                 item.name,
                 self._stiff.get(item.name, 0.0),
                 SpringNumbers(*(trim(float(v)) for v in _at(table, none)[:, 0])),
+                trim(rub),
             )
-            for item, table in zip(self._drawn.couplers, self._couplers, strict=True)
+            for item, table, rub in zip(self._drawn.couplers, self._couplers, self.rubs, strict=True)
         )
         return BuiltDevice(self._drawn, self.network, masses, couplers)
 
@@ -212,12 +222,18 @@ class Built:
     def _coupler_tables(self) -> list[Floats]:
         """One for each coupler found: the fields of ``SpringNumbers`` over errors of its walls."""
         known: dict[object, list[LeafLaw]] = {}
+        rubs: dict[object, float] = {}
         tables = []
+        self.rubs = []
         for item in self._drawn.couplers:
             key = (item.kind, *_leaf_key(item))
             if key not in known:
-                nominal = leaf_law(chain_of_leaf(item.leaf, item.sheet), item.kind, self._throw)
+                chain = chain_of_leaf(item.leaf, item.sheet)
+                nominal = leaf_law(chain, item.kind, self._throw)
                 known[key] = [_scaled(nominal, factor) for factor in self._factors(item)]
+                turns = item.kind is LeafKind.ROCKER
+                rubs[key] = self._mu * post_rub(chain, nominal, self._scale, self._drawn.post_radius) if turns else 0.0
+            self.rubs.append(rubs[key])
             # a coupling that is not the network's has no carrier that was ever computed: take that as rigid
             carrier = min(self._stiff.get(item.name, np.inf), 1e9)
             rows = []
@@ -236,16 +252,19 @@ class Built:
         return [other / nominal for other in others]
 
     def _bias_tables(self) -> list[Floats]:
-        known: dict[object, Floats] = {}
+        known: dict[object, tuple[Floats, BiasNumbers]] = {}
         tables = []
+        self._slides: dict[str, Bound] = {}
         for item in self._drawn.biases:
             key = (*_leaf_key(item), round(item.offset, 3))
             if key not in known:
                 chain = chain_of_leaf(item.leaf, item.sheet)
-                found = bias_numbers(chain, item.offset, self._throw, self._scale)
+                found = bias_numbers(chain, item.offset, self._throw, self._scale, self._drawn.post_radius)
                 nominal = np.array([found.bias, found.stiffness, found.cubic, found.quartic])
-                known[key] = self._polynomials([nominal * factor for factor in self._factors(item)])
-            tables.append(known[key])
+                known[key] = self._polynomials([nominal * factor for factor in self._factors(item)]), found
+            table, numbers = known[key]
+            self._slides[item.mass] = numbers.rub
+            tables.append(table)
         return tables
 
     # ---- assembly
@@ -280,7 +299,7 @@ class Built:
     def _devices(self, errors: Errors) -> Devices:
         place = {name: index for index, name in enumerate(self._structure.names)}
         lanes = errors.beams.shape[1]
-        masses = np.zeros((6, len(place), lanes))  # base, swing, bias, quartic, cubic, friction
+        masses = np.zeros((8, len(place), lanes))  # base, swing, bias, quartic, cubic, friction and how it goes with x
         for index, name in enumerate(self._names):
             beams, leaves, pins = self._units[name]
             drawn = _at(beams, np.zeros(1))
@@ -288,13 +307,14 @@ class Built:
             numbers = numbers + _at(leaves, errors.leaves[index]) + _at(pins, errors.pins[index]) - drawn
             at = place[name]
             masses[0, at], masses[1, at], masses[3, at] = numbers
-            masses[5, at] = self.friction[name]
-        entries = np.zeros((4, len(self._drawn.couplers), lanes))  # c, Q, C, B of each coupler
+            masses[5:, at] = np.array(self.friction[name])[:, None]
+        entries = np.zeros((5, len(self._drawn.couplers), lanes))  # c, Q, C, B, R of each coupler
         for index, (item, table) in enumerate(zip(self._drawn.couplers, self._couplers, strict=True)):
             c, source, target, *higher = _at(table, errors.couplers[index])
             masses[0, place[item.source]] += source
             masses[0, place[item.target]] += target
-            entries[:, index] = [c, *higher]
+            entries[:4, index] = [c, *higher]
+            entries[4, index] = self.rubs[index]
         for index, (leaf, table) in enumerate(zip(self._drawn.biases, self._biases, strict=True)):
             q, stiffness, cubic, quartic = _at(table, errors.biases[index])
             at = place[leaf.mass]
@@ -303,31 +323,25 @@ class Built:
             masses[4, at] += cubic
             masses[3, at] += quartic
         springs = entries[:, self._entries]
-        base, swing, bias, quartic, cubic, friction = masses
-        return Devices(base, swing, bias, quartic, cubic, friction, *springs)
+        return Devices(*masses, *springs)
 
-    def _friction(self, process: Process) -> dict[str, float]:
-        """Bound of dry friction (Coulomb), by mass, in units of F0.
+    def _friction(self, mu: float) -> dict[str, Bound]:
+        """Bound of dry friction (Coulomb) over x, by mass, in units of F0.
 
-        The weight of what moves with the shuttle; for a rocker the force on its post at full throw, at the post's
-        radius and the eye's turn by 3/4 of a throw over half its length (docs/mechanics.md); for a bias leaf its
-        pull at the end of its range times the share of its motion by which the eye slides.
+        The weight of what moves with the shuttle, and the pull of a bias leaf where its eye slides on its post. What
+        a rocker's post takes depends on both its ends: ``rubs``.
         """
-        mu, throw = process.stack.friction, self._throw
-        force = {name: mu * self._drawn.weights[name] for name in self._names}
-        none = np.zeros(1)
-        for coupler, table in zip(self._drawn.couplers, self._couplers, strict=True):
-            if coupler.kind is LeafKind.ROCKER and coupler.leaf.post:
-                c, source, target, *_ = _at(table, none)[:, 0]
-                pull = (max(source, target) + abs(c)) * self._scale.stiffness * throw
-                drag = mu * pull * self._drawn.post_radius * 0.75 / coupler.leaf.post
-                force[coupler.source] += drag
-                force[coupler.target] += drag
-        for bias, table in zip(self._drawn.biases, self._biases, strict=True):
-            q, stiffness, *_ = _at(table, none)[:, 0]
-            pull = abs(q) * self._scale.force + stiffness * self._scale.stiffness * throw
-            force[bias.mass] += mu * pull * bias.leaf.slot / throw
-        return {name: value / self._scale.force for name, value in force.items()}
+        found = {}
+        for name in self._names:
+            lying = mu * self._drawn.weights[name] / self._scale.force
+            least, slope, curve = self._slides.get(name, (0.0, 0.0, 0.0))
+            found[name] = (lying + mu * least, mu * slope, mu * curve)
+        return found
+
+
+def _trimmed(bound: Bound) -> Bound:
+    least, slope, curve = bound
+    return trim(least), trim(slope), trim(curve)
 
 
 def _at(polynomials: Floats, errors: Floats) -> Floats:

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mdlcad.mechanics.flexure import Chain, Sheet, signal_matrix
-from mdlcad.mechanics.frame import Array
+from mdlcad.mechanics.flexure import Chain, Sheet, deflect, signal_matrix
+from mdlcad.mechanics.frame import TURN, Array, X, dof
 from mdlcad.mechanics.leaves import LargeLeaf, LeafKind, higher_terms
 from mdlcad.mechanics.reduced import UnitNumbers, force_of
 from mdlcad.mechanics.series import SpringPlan, frame_of, spring_stiffness
@@ -54,14 +54,24 @@ class SpringNumbers:
     skew: float
 
 
+Bound = tuple[float, float, float]
+"""A bound of friction over x: f + f' x + f'' x^2, nowhere less than what it bounds."""
+
+
 @dataclass(frozen=True, slots=True)
 class BiasNumbers:
-    """A bias leaf: q, and the terms of second to fourth order in x that it adds to its mass."""
+    """A bias leaf: q, and the terms of second to fourth order in x that it adds to its mass.
+
+    Attributes:
+        rub: force of its eye on its post times the share of the shuttle's motion by which they slide on each other,
+            in F0: times the coefficient of friction it is what the shuttle feels.
+    """
 
     bias: float
     stiffness: float
     cubic: float
     quartic: float
+    rub: Bound
 
 
 def unit_numbers(seen: UnitSeen, sheet: Sheet, beams: float = 0.0, leaves: float = 0.0) -> UnitNumbers:
@@ -162,14 +172,45 @@ def spring_numbers(law: LeafLaw, carrier: float, scale: Scale) -> SpringNumbers:
     )
 
 
-def bias_numbers(chain: Chain, offset: float, throw: float, scale: Scale) -> BiasNumbers:
+def bias_numbers(chain: Chain, offset: float, throw: float, scale: Scale, post_radius: float) -> BiasNumbers:
     """A bias leaf whose post stands ``offset`` mm above the row: its force on the shuttle over +-``throw`` mm.
+
+    Where the eye bears on the post it moves with the eye: along its slot, and around the post as the leaf turns.
 
     Raises:
         ArithmeticError: it finds no equilibrium there.
     """
     large = LargeLeaf(chain)
     at = np.linspace(-throw, throw, _POINTS)
-    force: Array = np.array([large.force(float(y) - offset, 0.0) for y in at]) / scale.force
-    q, stiffness, cubic, quartic = np.polynomial.polynomial.polyfit(at / scale.length, force, 3)
-    return BiasNumbers(float(q), float(stiffness), float(cubic), float(quartic))
+    poses = [large.at(float(y) - offset, 0.0) for y in at]
+    force: Array = np.array([large.hold(pose) for pose in poses]) / scale.force
+    eye: Array = np.array(
+        [(pose.displacements[dof(chain.right, X)], pose.displacements[dof(chain.right, TURN)]) for pose in poses]
+    )
+    x = at / scale.length
+    q, stiffness, cubic, quartic = np.polynomial.polynomial.polyfit(x, force, 3)
+    along, turn = np.gradient(eye, at, axis=0).T
+    # a leaf that pulls its shuttle up bears on the post from above, at its top
+    slip = np.abs(along + np.sign(force) * post_radius * turn)
+    rub = _bound(x, np.abs(force) * slip)
+    return BiasNumbers(float(q), float(stiffness), float(cubic), float(quartic), rub)
+
+
+def _bound(x: Array, values: Array) -> Bound:
+    """The parabola that comes nearest to ``values``, lifted until it is nowhere less."""
+    fitted = np.polynomial.polynomial.polyfit(x, values, 2)
+    fitted[0] += float(np.max(values - np.polynomial.polynomial.polyval(x, fitted)))
+    return float(fitted[0]), float(fitted[1]), float(fitted[2])
+
+
+def post_rub(chain: Chain, law: LeafLaw, scale: Scale, post_radius: float) -> float:
+    """Of a rocker: force on its post times how fast its eye rubs there, in F0, for x + x' = 1 and ends moving apart.
+
+    For ends at y and y' the post is pressed by (own + across) y + (far + across) y', and the eye turns with y - y'
+    (docs/mechanics.md); its carrier's give only lessens that.
+    """
+    if chain.eye is None:
+        raise ValueError("a coupler has no eye")
+    turn = abs(float(deflect(chain, 1.0, 0.0).displacements[dof(chain.eye, TURN)]))
+    pressed = (max(law.own, law.far) + law.across) / scale.stiffness
+    return pressed * turn * post_radius

@@ -6,8 +6,9 @@ third order in how far its ends are apart and in their sum (a rocker's ends push
     V = sum_i [ lambda_i/4 x^4 + beta_i/3 x^3 + 1/2 (u_i + w_i p) x^2 + q_i x ]
       + sum_springs [ - c x_i x_j + Q/4 (x_i - x_j)^4 + C/4 (x_i + x_j)^4 + B (x_i + x_j) (x_i - x_j)^2 ]
 
-and dry friction, f v / (|v| + CREEP): Coulomb's law, made smooth where a mass all but stands still. The classical
-Runge-Kutta step, all devices of a block side by side.
+and dry friction, Coulomb's law made smooth where what rubs all but stands still: of a mass (f + f' x + f'' x^2)
+v / (|v| + CREEP), and of a spring with an eye that turns on a post, between its ends, R |x_i + x_j| w / (|w| + CREEP)
+with w = v_i - v_j. The classical Runge-Kutta step, all devices of a block side by side.
 """
 
 from __future__ import annotations
@@ -34,8 +35,10 @@ class Devices:
     """L devices of n masses and e coupling entries, in the order of ``System``; L = 1 stands for every lane.
 
     Attributes:
-        base, swing, bias, quartic, cubic, friction: float[n, L]: u, w, q, lambda, beta, f.
+        base, swing, bias, quartic, cubic: float[n, L]: u, w, q, lambda, beta.
+        friction, friction_slope, friction_curve: float[n, L]: f, f', f''.
         strength, apart, together, skew: float[e, L]: c, Q, C, B of each entry (two a spring).
+        rub: float[e, L]: R of each entry.
     """
 
     base: Floats
@@ -44,10 +47,13 @@ class Devices:
     quartic: Floats
     cubic: Floats
     friction: Floats
+    friction_slope: Floats
+    friction_curve: Floats
     strength: Floats
     apart: Floats
     together: Floats
     skew: Floats
+    rub: Floats
 
     @property
     def count(self) -> int:
@@ -55,10 +61,19 @@ class Devices:
         return int(self.base.shape[1])
 
     def block(self, start: int) -> tuple[tuple[Floats, ...], tuple[Floats, ...]]:
-        """Numbers of masses, float[6, n, BLOCK], and of springs, float[4, e, BLOCK], of the lanes from ``start`` on."""
+        """Numbers of masses, float[8, n, BLOCK], and of springs, float[5, e, BLOCK], of the lanes from ``start`` on."""
         lanes = np.minimum(np.arange(start, start + BLOCK), self.count - 1)
-        masses = (self.base, self.swing, self.bias, self.quartic, self.cubic, self.friction)
-        springs = (self.strength, self.apart, self.together, self.skew)
+        masses = (
+            self.base,
+            self.swing,
+            self.bias,
+            self.quartic,
+            self.cubic,
+            self.friction,
+            self.friction_slope,
+            self.friction_curve,
+        )
+        springs = (self.strength, self.apart, self.together, self.skew, self.rub)
         return (
             tuple(np.ascontiguousarray(array[:, lanes]) for array in masses),
             tuple(np.ascontiguousarray(array[:, lanes]) for array in springs),
@@ -80,14 +95,15 @@ def pushes(
     damping: float,
 ) -> None:
     """Write m x'' of every mass to ``out`` (float[n, BLOCK]); ``wave`` is p of every phase, ``force`` from outside."""
-    base, swing, bias, quartic, cubic, friction = masses
-    strength, apart, together, skew = springs
+    base, swing, bias, quartic, cubic, friction, friction_slope, friction_curve = masses
+    strength, apart, together, skew, rub = springs
     for i in range(x.shape[0]):
         p = wave[phase[i]]
         for lane in range(BLOCK):
             y = x[i, lane]
             stiff = base[i, lane] + swing[i, lane] * p + (cubic[i, lane] + quartic[i, lane] * y) * y
-            drag = damping + friction[i, lane] / (abs(v[i, lane]) + CREEP)
+            bound = friction[i, lane] + (friction_slope[i, lane] + friction_curve[i, lane] * y) * y
+            drag = damping + max(bound, 0.0) / (abs(v[i, lane]) + CREEP)
             out[i, lane] = force[i, lane] - bias[i, lane] - drag * v[i, lane] - stiff * y
         for e in range(row_start[i], row_start[i + 1]):
             j = column[e]
@@ -100,6 +116,12 @@ def pushes(
                     - together[e, lane] * total * total * total
                     - skew[e, lane] * difference * (difference + 2.0 * total)
                 )
+            # what rubs does so in every device; most springs do not
+            if rub[e, 0] > 0.0:
+                for lane in range(BLOCK):
+                    apace = v[i, lane] - v[j, lane]
+                    total = x[i, lane] + x[j, lane]
+                    out[i, lane] -= rub[e, lane] * abs(total) * apace / (abs(apace) + CREEP)
 
 
 @kernel
