@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -9,7 +10,7 @@ import numpy.typing as npt
 
 from mdlcad.mechanics.rules import LayoutRules
 from mdlcad.network.model import Network
-from mdlcad.placement.grid import TabTerminal, free_intervals, holding, way
+from mdlcad.placement.grid import RESOLUTION, TabTerminal, free_intervals, holding, way
 from mdlcad.placement.lattice import Lattice
 from mdlcad.placement.linkable import unrealisable
 
@@ -96,7 +97,8 @@ def build(network: Network, lattice: Lattice, rules: LayoutRules) -> Problem:
         sizes=np.array(
             [
                 rules.hub_half + half,
-                rules.track_pitch,
+                # the router counts in steps of this
+                math.ceil(rules.track_pitch / RESOLUTION - 1e-6) * RESOLUTION,
                 len(rules.link_plates),
                 max((rules.bias_ends.get(m, r + rules.post_radius) for m, r in rules.biases.items()), default=0.0)
                 - half,

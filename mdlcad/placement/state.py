@@ -11,8 +11,9 @@ from mdlcad.placement.problem import Floats, Ints, Problem
 
 DEEP = 16
 """Most items that can meet one side of a row of a channel."""
-BAND = 24
-"""Most rows whose trunks are packed together; trunks of more rows take the packing's cost in each of their bands."""
+MANY, BAND = 100, 24
+"""With more masses than MANY, at most BAND rows of trunks are packed together, so that a move costs no more in a large
+device; a trunk in more bands takes the packing's cost in each. What is legal in every band need not be so in all."""
 
 
 class State(NamedTuple):
@@ -61,7 +62,8 @@ def start(problem: Problem, slot_of: Ints, seed: int) -> tuple[State, npt.NDArra
     masses, channels, rows = len(slot_of), problem.limits.shape[0], problem.limits.shape[1]
     if masses and int(np.max(np.diff(problem.mass[:, 1]))) + 6 > DEEP:
         raise ValueError("a mass has too many inputs for the placer")
-    bands = channels * max(1, -(-rows // BAND))
+    together = BAND if masses > MANY else max(1, rows)
+    bands = channels * max(1, -(-rows // together))
     mass_at = np.full(len(problem.slot), -1, np.int32)
     mass_at[slot_of] = np.arange(masses, dtype=np.int32)
     state = State(
@@ -80,7 +82,7 @@ def start(problem: Problem, slot_of: Ints, seed: int) -> tuple[State, npt.NDArra
         due=np.zeros(masses + 1),
         waits=np.zeros(masses + 1, np.int32),
         last=np.zeros(masses + 1, np.int32),
-        orders=np.zeros((min(rows, BAND) * 3 * DEEP * DEEP, 3), np.int32),
+        orders=np.zeros((min(rows, together) * 3 * DEEP * DEEP, 3), np.int32),
         home=np.full((max(masses, len(problem.coupling)), 3), -1, np.int32),
         price=np.zeros(2),
     )

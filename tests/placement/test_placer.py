@@ -5,12 +5,12 @@ import pytest
 
 from mdlcad.network.model import Coupling, CouplingKind
 from mdlcad.placement.anneal import HARD, anneal
-from mdlcad.placement.grid import way
+from mdlcad.placement.grid import RESOLUTION, way
 from mdlcad.placement.lattice import Lattice, lattices, place_ports
 from mdlcad.placement.linkable import unrealisable
 from mdlcad.placement.placer import choose_sides, place
 from mdlcad.placement.problem import build
-from mdlcad.placement.state import start
+from mdlcad.placement.state import BAND, start
 from tests.placement.networks import SQUARE, small
 
 SCALE = 3.9
@@ -59,6 +59,26 @@ def test_a_sound_placement_keeps_nets_and_ports_in_reach():
         assert found is not None
         rows = (tab.row,) if tab.vertical else tab.rows
         assert not [u for u in at.values() if found.first <= u.column <= found.last and u.row in rows]
+
+
+def test_a_tall_channel_of_a_small_network_is_packed_whole():
+    """In bands, orders asked for in rows far apart would not be seen together."""
+    network, ports, rules = small()
+    tall = tuple((x, 3 * y) for x, y in SQUARE)
+    places = tuple(replace(port, y=3 * port.y) for port in ports)
+    grid = lattices(tall, place_ports(network, places, SCALE), rules, SCALE, 18)[0]
+    assert len(grid.row_y) > BAND
+    problem = build(network, grid, rules)
+    state, _ = start(problem, np.arange(len(network.masses), dtype=np.int32), 1)
+    assert len(state.trunk_count) == len(grid.column_x) + 1
+
+
+def test_tracks_are_packed_in_steps_that_the_router_counts_in():
+    network, _, rules = small()
+    problem = build(network, lattice(), replace(rules, track_pitch=rules.track_pitch + 0.02))
+    pitch = float(problem.sizes[1])
+    assert rules.track_pitch + 0.02 <= pitch < rules.track_pitch + 0.02 + RESOLUTION
+    assert pitch / RESOLUTION == pytest.approx(round(pitch / RESOLUTION))
 
 
 def test_same_seed_same_placement_other_seed_another():
