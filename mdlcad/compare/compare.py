@@ -44,7 +44,7 @@ STEPS = (
     Step("placement", placement_changes, ("placement.json",)),
     Step("routing", routing_changes, ("layout.json",)),
     Step("plates", plate_changes, ("plates/",)),
-    Step("parts", part_changes, ("parts.json", "sizing.json")),
+    Step("parts", part_changes, ("parts.json", "sizing.json", "compensation.json")),
     Step("behaviour", behaviour_changes, ("proof.json", "extraction.json", "drc.json", "drive.json")),
 )
 FILES = "files"

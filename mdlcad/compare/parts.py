@@ -15,6 +15,7 @@ from mdlcad.compare.folders import NotComparable, read
 from mdlcad.compare.pair import Findings, Pair
 from mdlcad.errors import UsageError
 from mdlcad.mechanics import Process, Sizing
+from mdlcad.mechanics.compensation import COMPENSATION_FILE, Compensation, compensated
 from mdlcad.parts.body import Body
 from mdlcad.parts.bom import bill_of_materials
 from mdlcad.parts.store import Parts
@@ -171,6 +172,9 @@ def _carriers(pair: Pair) -> list[Change]:
 
 def _sizes(pair: Pair) -> list[Change]:
     a, b = pair.both("sizing.json", Sizing)
+    if pair.a.has(COMPENSATION_FILE) and pair.b.has(COMPENSATION_FILE):
+        solved = pair.both(COMPENSATION_FILE, Compensation)
+        a, b = compensated(a, solved[0]), compensated(b, solved[1])
     changes = []
     for what, sized_a, sized_b in (
         ("size of unit", {pair.mass(u.mass): u for u in a.units}, {u.mass: u for u in b.units}),

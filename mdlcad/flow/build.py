@@ -31,7 +31,7 @@ from mdlcad.report.report import Origin, StageRecord, Stopped
 from mdlcad.routing.driver import SMALLEST, Size
 
 # What ``--from`` can take from a folder instead of making it.
-_LOADED = ("device", "netlist", "network", "proof", "sizing", "placement", "layout")
+_LOADED = ("device", "netlist", "network", "proof", "sizing", "placement", "layout", "compensation")
 
 
 @dataclass(frozen=True, slots=True)

@@ -31,7 +31,7 @@ def make_report(
         extracted=behaviour_of(state.extracted),
         lvs=Lvs(state.lvs.matched, state.lvs.differences) if state.lvs else None,
         drc=state.rules.counts if state.rules else None,
-        mechanics=mechanics_of(state.sizing, state.carriers),
+        mechanics=mechanics_of(state.sizing, state.carriers, state.compensation),
         drive=state.drive,
         margins=state.margins,
         extent_mm=extent_of(bodies) if bodies else None,

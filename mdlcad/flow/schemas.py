@@ -14,6 +14,7 @@ from mdlcad.language import Device
 from mdlcad.mapping.library import Library
 from mdlcad.mapping.two_phase import TwoPhaseLibrary
 from mdlcad.mechanics import Sizing
+from mdlcad.mechanics.compensation import Compensation
 from mdlcad.mechanics.drive import DriveLoads
 from mdlcad.network.model import Network
 from mdlcad.parts.store import Parts
@@ -41,6 +42,7 @@ ARTEFACTS: dict[str, Any] = {
     "cells-two_phase": TwoPhaseLibrary,
     "search": Search,
     "layout": Layout,
+    "compensation": Compensation,
     "parts": Parts,
     "drc": DesignRules,
     "drive": DriveLoads,

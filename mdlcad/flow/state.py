@@ -12,6 +12,7 @@ from mdlcad.flow.outline import Outline
 from mdlcad.language import Device
 from mdlcad.mapping import Library
 from mdlcad.mechanics import Process, Sizing
+from mdlcad.mechanics.compensation import Compensation
 from mdlcad.mechanics.drive import DriveLoads
 from mdlcad.network.model import Network
 from mdlcad.parts.body import Body
@@ -77,6 +78,7 @@ class State:
     Attributes:
         grid: what the placement is with a library that has no parts yet.
         search: how the placement was found.
+        sizing: from the step "compensation" on, with the preloads that it solved.
         guide, files, pictures: paths in the folder, of the assembly guide, the files for other programs and the views.
     """
 
@@ -90,6 +92,7 @@ class State:
     grid: GridPlacement | None = None
     search: Search | None = None
     layout: Layout | None = None
+    compensation: Compensation | None = None
     bodies: tuple[Body, ...] | None = None
     carriers: tuple[CarrierStiffness, ...] = ()
     rules: DesignRules | None = None

@@ -18,11 +18,12 @@ from mdlcad.flow.state import Job, State, need
 from mdlcad.flow.step import Progress, Step, from_artefact
 from mdlcad.language import Device, read_device
 from mdlcad.mapping import map_netlist
-from mdlcad.mechanics import Sizing, size
+from mdlcad.mechanics import Process, Sizing, size
+from mdlcad.mechanics.compensation import COMPENSATION_FILE, Compensation, compensate, compensated
 from mdlcad.mechanics.drive import DriveLoads, drive_loads
 from mdlcad.network.model import CouplingKind, Network
 from mdlcad.parts import build_parts
-from mdlcad.parts.stiffness import carrier_stiffnesses
+from mdlcad.parts.stiffness import CarrierStiffness, carrier_stiffnesses
 from mdlcad.parts.store import Parts, bodies_of, records_of
 from mdlcad.placement.placement import Placement
 from mdlcad.proof.outcome import Proof
@@ -107,6 +108,31 @@ def _place_and_route(job: Job, state: State, progress: Progress) -> State:
     return replace(state, placement=best.result.placement, layout=best.result.layout, search=best.search)
 
 
+def _carriers(state: State, process: Process) -> tuple[CarrierStiffness, ...]:
+    network, placement, layout = need(state.network), need(state.placement), need(state.layout)
+    return carrier_stiffnesses(network, placement, layout, need(state.sizing), process)
+
+
+def _compensate(job: Job, state: State, progress: Progress) -> State:
+    sizing, carriers = need(state.sizing), _carriers(state, job.process)
+    try:
+        found = compensate(
+            need(state.network), job.process, sizing, {item.coupling: item.stiffness for item in carriers}
+        )
+    except ArithmeticError as problem:
+        raise SignoffError(f"the units cannot make up for their springs: {problem}") from problem
+    return replace(state, compensation=found, sizing=compensated(sizing, found), carriers=carriers)
+
+
+def _compensation_words(state: State) -> str:
+    units = need(state.compensation).units
+    left = max(abs(value) for unit in units for value in unit.left)
+    return (
+        f"preloads {min(unit.preload for unit in units):.2f} to {max(unit.preload for unit in units):.2f} mm leave "
+        f"{max(abs(unit.left[1]) for unit in units):.3f} of k at the clock's middle, {left:.2f} at its ends"
+    )
+
+
 def _build_parts(job: Job, state: State, progress: Progress) -> State:
     network, placement, layout, sizing = (
         need(state.network),
@@ -114,11 +140,8 @@ def _build_parts(job: Job, state: State, progress: Progress) -> State:
         need(state.layout),
         need(state.sizing),
     )
-    return replace(
-        state,
-        bodies=build_parts(network, placement, layout, sizing, job.process, Polygon(placement.boundary)),
-        carriers=carrier_stiffnesses(network, placement, layout, sizing, job.process),
-    )
+    bodies = build_parts(network, placement, layout, sizing, job.process, Polygon(placement.boundary))
+    return replace(state, bodies=bodies)
 
 
 def _check_geometry(job: Job, state: State, progress: Progress) -> State:
@@ -227,9 +250,14 @@ def _restore_placed(job: Job, state: State, files: tuple[str, ...]) -> State:
     return replace(state, placement=placement, layout=layout, search=search)
 
 
+def _restore_compensation(job: Job, state: State, files: tuple[str, ...]) -> State:
+    found, sizing = load(job.folder, COMPENSATION_FILE, Compensation), need(state.sizing)
+    return replace(state, compensation=found, sizing=compensated(sizing, found), carriers=_carriers(state, job.process))
+
+
 def _restore_parts(job: Job, state: State, files: tuple[str, ...]) -> State:
     parts = load(job.folder, "parts.json", Parts)
-    return replace(state, bodies=bodies_of(parts.bodies), carriers=parts.carriers)
+    return replace(state, bodies=bodies_of(parts.bodies))
 
 
 def _restore_extraction(job: Job, state: State, files: tuple[str, ...]) -> State:
@@ -327,9 +355,19 @@ STEPS: tuple[Step, ...] = (
         draw=_draw_layout,
     ),
     Step(
-        "parts",
+        "compensation",
         ("network", "placement", "layout", "sizing"),
-        ("bodies", "carriers"),
+        ("compensation", "sizing", "carriers"),
+        _compensate,
+        _compensation_words,
+        lambda s: to_json(s.compensation),
+        _restore_compensation,
+        ("process",),
+    ),
+    Step(
+        "parts",
+        ("network", "placement", "layout", "sizing", "carriers"),
+        ("bodies",),
         _build_parts,
         lambda s: f"{len(need(s.bodies))} bodies",
         lambda s: to_json(Parts(records_of(need(s.bodies)), s.carriers)),

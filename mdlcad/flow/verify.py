@@ -18,6 +18,7 @@ from mdlcad.language import Device
 from mdlcad.mapping import CELLS_FILE, map_netlist, recorded_library
 from mdlcad.mapping.two_phase import TwoPhaseLibrary
 from mdlcad.mechanics import Process, Sizing
+from mdlcad.mechanics.compensation import COMPENSATION_FILE, Compensation, compensate, compensated
 from mdlcad.mechanics.drive import DriveLoads
 from mdlcad.network.model import Network
 from mdlcad.parts import build_parts
@@ -94,8 +95,17 @@ def _verify(folder: Path, report: Report, workers: int, say: Callable[[str], Non
         return broken
     sizing, process = load(folder, "sizing.json", Sizing), load(folder, "process.json", Process)
     placement, layout = load(folder, "placement.json", Placement), load(folder, "layout.json", Layout)
-    bodies = build_parts(network, placement, layout, sizing, process, Polygon(placement.boundary))
     carriers = carrier_stiffnesses(network, placement, layout, sizing, process)
+    stiffness = {item.coupling: item.stiffness for item in carriers}
+    solved = load(folder, COMPENSATION_FILE, Compensation)
+    step(
+        "compensation",
+        []
+        if compensate(network, process, sizing, stiffness) == solved
+        else [f"{COMPENSATION_FILE}: not what the carriers ask for"],
+    )
+    sizing = compensated(sizing, solved)
+    bodies = build_parts(network, placement, layout, sizing, process, Polygon(placement.boundary))
     stored = load(folder, "parts.json", Parts)
     step("parts", [] if stored == Parts(records_of(bodies), carriers) else ["parts.json: not what the layout makes"])
     rules = check_geometry(network, sizing, placement, layout, bodies, carriers, process)

@@ -17,6 +17,7 @@ import numpy as np
 
 from mdlcad.mechanics.process import Process
 from mdlcad.mechanics.sizing import Sizing
+from mdlcad.mechanics.unit import clock_swing
 from mdlcad.network.model import Network
 from mdlcad.simulation.decode import instants
 from mdlcad.simulation.drive import with_tick
@@ -121,7 +122,7 @@ def _clock(
     """The plates' loads, and the shaft's torque float[frames, lanes] in N mm."""
     law, unit = sizing.law, process.unit
     phases = network.dynamics.phases
-    swing = law.stroke_per_k * max(abs(mass.k1) for mass in network.masses)
+    swing = clock_swing(network, law)
     preload = np.array([item.preload for item in sizing.units])
     phase = np.array([mass.phase for mass in network.masses])
     amplitude = unit.throw_unit * trace

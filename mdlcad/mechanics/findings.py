@@ -8,7 +8,7 @@ from mdlcad.mechanics.process import PlateRole, Process
 from mdlcad.mechanics.rules import LayoutRules
 from mdlcad.mechanics.series import SeriesSpring
 from mdlcad.mechanics.sizes import BiasSize, CouplerSize, UnitSize
-from mdlcad.mechanics.unit import UnitLaw
+from mdlcad.mechanics.unit import UnitLaw, clock_swing
 from mdlcad.network.model import CouplingKind, Network
 
 
@@ -55,6 +55,12 @@ def findings_of(
     most("strain_peak", "unit.series", series.strain, material.strain_peak, peak)
     for unit in units:
         most("strain", f"unit.{unit.mass}", unit.strain, limit, "beams strained at the largest throw seen")
+        least("preload_room", f"unit.{unit.mass}", unit.preload, unit.room[0], "its clock block overruns its slot")
+        most("preload_room", f"unit.{unit.mass}", unit.preload, unit.room[1], "its series spring has no room for it")
+    # the spring takes the share of the clock's motion that the beams leave it
+    share = law.axial_stiffness / law.series_stiffness
+    pushed = share * (max(unit.room[1] for unit in units) + clock_swing(network, law))
+    most("preload_room", "unit.series", pushed, series.travel, "stems are pushed nearer to each other than a gap")
     for mass in network.masses:
         spread = max(abs(other.k1) for other in network.masses) - abs(mass.k1)
         most("gain", f"unit.{mass.name}", spread, 0.0, "clock plates have one stroke: its k1 cannot be smaller")

@@ -51,15 +51,19 @@ class UnitNumbers:
 
 def unit_force(process: Process, law: UnitLaw, series: SeriesSpring, clock: float, displacement: Array) -> Array:
     """Force in N that holds a shuttle at each of ``displacement`` (mm), its clock pushed in by ``clock`` mm."""
+    return force_of(sized_numbers(process, law, series), clock, displacement)
+
+
+def sized_numbers(process: Process, law: UnitLaw, series: SeriesSpring) -> UnitNumbers:
+    """The law's numbers of every unit as sized."""
     unit = process.unit
-    numbers = UnitNumbers(
+    return UnitNumbers(
         unit.beams,
         unit.span,
         law.beam_stiffness * unit.span**3 / (24.0 * unit.beams),
         1.0 / (1.0 / law.beams_axial + 1.0 / series.stiffness),
         block_stiffness(process, series),
     )
-    return force_of(numbers, clock, displacement)
 
 
 def force_of(numbers: UnitNumbers, clock: float, displacement: Array) -> Array:

@@ -45,7 +45,8 @@ class UnitSize:
 
     Attributes:
         compensation_network: what the cell library computed; compensation: minus the self terms of the parts built.
-        preload: mm by which the clock block is pushed towards the shuttle when the clock stands in its middle (p = 1).
+        preload: mm by which the clock block is pushed towards the shuttle when the clock stands in its middle (p = 1);
+            room: the least and the most that its slot has room for.
         amplitude: largest |y| seen, mm; strain: largest in its beams there, at large displacements, at either end of
             the clock's motion.
     """
@@ -55,5 +56,6 @@ class UnitSize:
     compensation_network: float
     compensation: float
     preload: float
+    room: tuple[float, float]
     amplitude: float
     strain: float

@@ -10,13 +10,14 @@ from statistics import median_low
 from mdlcad.errors import UsageError
 from mdlcad.mechanics.findings import Finding, findings_of
 from mdlcad.mechanics.leaves import LeafKind, LeafSize, bias_offset, eye_radius, size_leaf, trim
+from mdlcad.mechanics.preload import compensator, room_for, self_terms
 from mdlcad.mechanics.process import PlateRole, Process
 from mdlcad.mechanics.rules import LayoutRules
 from mdlcad.mechanics.series import SeriesSpring, series_spring
 from mdlcad.mechanics.sizes import BiasSize, CouplerSize, UnitSize
 from mdlcad.mechanics.strains import cases_of, unit_strains
-from mdlcad.mechanics.unit import UnitLaw, unit_law
-from mdlcad.network.model import Coupling, Mass, Network
+from mdlcad.mechanics.unit import UnitLaw, clock_swing, unit_law
+from mdlcad.network.model import Coupling, Network
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,12 +51,18 @@ def size(network: Network, process: Process, peak: Mapping[str, float]) -> Sizin
     throw = round(throw, 6)
     couplers = _couplers(network, process, law, throw)
     biases = _biases(network, process, law, throw)
-    absorbed = _self_terms(network, couplers, biases)
+    absorbed = self_terms(network, couplers, biases, law, {})
+    least_stiff = {item.coupling: process.link.carrier_ratio * item.leaf.own for item in couplers}
+    softened = self_terms(network, couplers, biases, law, least_stiff)
     # a cut edge may stand out by the repeatability; a strained leaf bulges by less than that beyond its ends
     row_pitch = _up(law.shuttle_height + 2.0 * throw + process.link.gap + process.machine.repeatability)
     k_least = min(min(mass.k0, mass.k0 + 2.0 * mass.k1) for mass in network.masses)
     series = series_spring(process, law, row_pitch, k_least, max(absorbed.values()))
-    preloads = {mass.name: _preload(mass, absorbed[mass.name], process, law) for mass in network.masses}
+    solver = compensator(network, process, law, series, peak, absorbed)
+    try:
+        preloads, softest = solver.preloads(absorbed), solver.preloads(softened)
+    except ArithmeticError as error:
+        raise UsageError(f"process {process.name}: unit: {error}") from error
     strains = unit_strains(network, process, law, series, preloads, peak)
     series = replace(series, strain=trim(strains.peak), strain_settled=trim(strains.settled))
     units = tuple(
@@ -65,6 +72,7 @@ def size(network: Network, process: Process, peak: Mapping[str, float]) -> Sizin
             compensation_network=mass.compensation,
             compensation=trim(0.0 - absorbed[mass.name]),
             preload=preloads[mass.name],
+            room=room_for(preloads[mass.name], softest[mass.name]),
             amplitude=process.unit.throw_unit * peak[mass.name],
             strain=trim(strains.beams[mass.name]),
         )
@@ -140,23 +148,6 @@ def _bias_leaf(force: float, stiffness: float, process: Process, law: UnitLaw, t
     return leaf, -bent
 
 
-def _self_terms(network: Network, couplers: tuple[CouplerSize, ...], biases: tuple[BiasSize, ...]) -> dict[str, float]:
-    """Sum of the self terms of the parts that are built at every mass, in units of S0."""
-    total = {mass.name: 0.0 for mass in network.masses}
-    for coupling, coupler in zip(network.couplings, couplers, strict=True):
-        total[coupling.source] += coupler.self_stiffness
-        total[coupling.target] += coupler.self_stiffness
-    for bias in biases:
-        total[bias.mass] += bias.self_stiffness
-    return total
-
-
-def _preload(mass: Mass, absorbed: float, process: Process, law: UnitLaw) -> float:
-    # The unit's own k at p = 1 is what the mass is to have, less what its springs add; kappa0 is the unloaded unit's.
-    own = mass.k0 + mass.k1 - absorbed
-    return round(law.stroke_per_k * (process.unit.kappa0 - own), 4)
-
-
 TURN_SHARE = 0.45
 """Of what a carrier may give, so much to the shuttle's turning; the rest to bars and pins."""
 
@@ -196,8 +187,8 @@ def _rules(
 ) -> LayoutRules:
     unit, pin, link = process.unit, process.pin, process.link
     hub_half = pin.hub_gap / 2.0 + pin.side + 2.0 * pin.wall
-    clock_throw = _up(law.stroke_per_k * max(abs(mass.k1) for mass in network.masses))
-    overrun = max(0.0, clock_throw - min(item.preload for item in units))
+    clock_throw = _up(clock_swing(network, law))
+    overrun = max(0.0, clock_throw - min(item.room[0] for item in units))
     left = _up(hub_half + unit.span + unit.rib_width)
     right = _up(hub_half + unit.span + series.reach + overrun + link.gap)
     reach = {item.coupling: round(hub_half + item.leaf.reach, 6) for item in couplers}

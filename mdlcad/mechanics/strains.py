@@ -20,7 +20,7 @@ from mdlcad.mechanics.leaves import LeafKind, LeafSize, large_strain
 from mdlcad.mechanics.process import PlateRole, Process
 from mdlcad.mechanics.series import SeriesSpring
 from mdlcad.mechanics.sizes import BiasSize, CouplerSize
-from mdlcad.mechanics.unit import UnitLaw
+from mdlcad.mechanics.unit import UnitLaw, clock_swing
 from mdlcad.network.model import Mass, Network
 from mdlcad.proof.prove import SENSOR_FORCE
 
@@ -52,7 +52,7 @@ def unit_strains(
     Raises:
         UsageError: the beams of the process find no equilibrium at these displacements.
     """
-    swing = law.stroke_per_k * max(abs(mass.k1) for mass in network.masses)
+    swing = clock_swing(network, law)
     low, high = min(preloads.values()), max(preloads.values())
     reaches = {p: reach_at(network, peaks, float(p)) for p in (0, 1, 2)}
     # the least compressed unit at the clock's bottom, either in its middle, the most compressed one at its peak

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 from mdlcad.errors import UsageError
 from mdlcad.mechanics.process import PlateRole, Process
+from mdlcad.network.model import Network
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,3 +86,8 @@ def unit_law(process: Process) -> UnitLaw:
         shuttle_turn=2.0 * one_axial * spread + count * 4.0 * modulus * depth * unit.beam_wall**3 / 12.0 / unit.span,
         shuttle_tilt=2.0 * 12.0 * modulus * inertia_z / unit.span**3 * spread,
     )
+
+
+def clock_swing(network: Network, law: UnitLaw) -> float:
+    """Half stroke of the clock, mm: from p = 1 to p = 2."""
+    return law.stroke_per_k * max(abs(mass.k1) for mass in network.masses)

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from mdlcad.artefact import checksum
 from mdlcad.mechanics import Sizing
+from mdlcad.mechanics.compensation import Compensation
 from mdlcad.parts.body import Body
 from mdlcad.parts.stiffness import CarrierStiffness
 from mdlcad.proof.outcome import Proof
@@ -23,7 +24,9 @@ def behaviour_of(proof: Proof | None) -> Behaviour | None:
     return Behaviour(proof.transitions_total, proof.transitions_checked, proof.mismatches, proof.exhaustive)
 
 
-def mechanics_of(sizing: Sizing | None, carriers: Sequence[CarrierStiffness]) -> Mechanics | None:
+def mechanics_of(
+    sizing: Sizing | None, carriers: Sequence[CarrierStiffness], compensation: Compensation | None = None
+) -> Mechanics | None:
     """The figures of the sizing that decide whether the parts can work."""
     if sizing is None:
         return None
@@ -38,7 +41,13 @@ def mechanics_of(sizing: Sizing | None, carriers: Sequence[CarrierStiffness]) ->
         warnings=tuple(
             f"{item.subject}: {item.message}: {item.value:.4g}, limit {item.limit:.4g}" for item in sizing.findings
         ),
+        compensation_left=None if compensation is None else _left(compensation),
     )
+
+
+def _left(compensation: Compensation) -> tuple[float, float, float]:
+    first, middle, last = (max(abs(unit.left[p]) for unit in compensation.units) for p in range(3))
+    return first, middle, last
 
 
 def extent_of(bodies: Sequence[Body]) -> tuple[float, float, float]:

@@ -14,7 +14,8 @@ from markupsafe import Markup
 
 from mdlcad.artefact import load, write_atomic
 from mdlcad.language import Device
-from mdlcad.mechanics import Process, Sizing
+from mdlcad.mechanics import Process
+from mdlcad.mechanics.compensation import COMPENSATION_FILE, Compensation, final_sizing
 from mdlcad.network.model import Network
 from mdlcad.proof.outcome import Proof
 from mdlcad.report.make import PAGE
@@ -78,7 +79,8 @@ def page(folder: Path) -> str:
         return load(folder, name, kind) if (folder / name).is_file() else None
 
     device, network = made("device.json", Device), made("network.json", Network)
-    process, sizing = made("process.json", Process), made("sizing.json", Sizing)
+    process, compensation = made("process.json", Process), made(COMPENSATION_FILE, Compensation)
+    sizing = final_sizing(folder) if (folder / "sizing.json").is_file() else None
     proof, rules = made("proof.json", Proof), made("drc.json", DesignRules)
     extraction = made("extraction.json", tuple[LvsResult, Proof])
     proofs = [("network", proof)] if proof else []
@@ -99,6 +101,7 @@ def page(folder: Path) -> str:
         rules=rule_rows(rules, report, process) if rules else [],
         sizes=size_rows(sizing, process) if sizing and process else [],
         flexures=flexure_rows(sizing) if sizing else [],
+        compensation=compensation,
         bom=report.bom,
         stock=stock_words(report.bom) if report.bom else [],
         pictures=[

@@ -40,6 +40,8 @@ class Mechanics:
         compensation_difference_worst: largest difference, in units of k, between the compensation the network assumes
             and the one that the built parts need.
         warnings: what the sizing found wanting, in words with numbers.
+        compensation_left: largest |k| that a unit and its springs miss the network's k by at p = 0, 1 and 2, by the
+            unit's law, preloads solved with the carriers as routed; None before there is a layout.
     """
 
     strain_worst: float
@@ -48,6 +50,7 @@ class Mechanics:
     clock_stroke_mm: float
     compensation_difference_worst: float
     warnings: tuple[str, ...]
+    compensation_left: tuple[float, float, float] | None = None
 
 
 class Origin(StrEnum):

@@ -31,6 +31,7 @@ _RULES = {
     "carrier_stiffness": ("a carrier is stiff enough for the couplers it drives", "times"),
     "strain": ("no flexure is strained beyond its limit in repeated use", ""),
     "strain_peak": ("no flexure is strained beyond its limit at rare peaks", ""),
+    "preload_room": ("every solved preload stays within the room that its slot was sized for", "mm"),
     "slope": ("no leg of a flexure turns too far", "rad"),
     "clearance": ("neighbouring legs of a flexure stay apart", "mm"),
     "quartic": ("no coupler stiffens too much at its extremes", ""),
@@ -163,6 +164,13 @@ def margin_rows(
         "largest change, in units of k, that the parts as built make to a unit's compensation; it is in the preloads"
     )
     rows.append(Margin("compensation", f"{mechanics.compensation_difference_worst:.2f}", "", about, None))
+    if mechanics.compensation_left is not None:
+        first, middle, last = mechanics.compensation_left
+        about = (
+            "largest k by which a unit with its springs misses the network's, once its preload is solved: at p = 0, 1 "
+            "and 2; at the ends it is the stroke, which all units share"
+        )
+        rows.append(Margin("k left", f"{first:.2f}, {middle:.3f}, {last:.2f}", "", about, None))
     return rows
 
 

@@ -17,10 +17,12 @@ from numpy.typing import NDArray
 
 from mdlcad.errors import SignoffError
 from mdlcad.mechanics import Process, Sizing
+from mdlcad.mechanics.fit import Scale, fit_unit
 from mdlcad.mechanics.flexure import signal_matrix
 from mdlcad.mechanics.leaves import LeafKind, trim
 from mdlcad.mechanics.reduced import UnitNumbers
 from mdlcad.mechanics.strains import reach_at
+from mdlcad.mechanics.unit import clock_swing
 from mdlcad.network.model import Coupling, Network
 from mdlcad.parts.stiffness import CarrierStiffness
 from mdlcad.signoff.drawn import BiasDrawn, CouplerDrawn, Drawn
@@ -29,10 +31,8 @@ from mdlcad.signoff.numbers import (
     BiasNumbers,
     Bound,
     LeafLaw,
-    Scale,
     SpringNumbers,
     bias_numbers,
-    fit_unit,
     leaf_law,
     post_rub,
     spring_numbers,
@@ -131,7 +131,7 @@ class Built:
         self._grid = np.array(grid)
         self._scale = Scale(sizing.law.stiffness_unit, process.unit.throw_unit)
         self._throw = sizing.rules.throw
-        self._swing = sizing.law.stroke_per_k * max(abs(mass.k1) for mass in network.masses)
+        self._swing = clock_swing(network, sizing.law)
         peaks = {unit.mass: unit.amplitude / process.unit.throw_unit for unit in sizing.units}
         self._reaches = [process.unit.throw_unit * max(reach_at(network, peaks, p).values()) for p in (0.0, 1.0, 2.0)]
         self._mu = process.stack.friction

@@ -11,35 +11,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mdlcad.mechanics.fit import Scale, in_row
 from mdlcad.mechanics.flexure import Chain, Sheet, deflect, signal_matrix
 from mdlcad.mechanics.frame import TURN, Array, X, dof
 from mdlcad.mechanics.leaves import LargeLeaf, LeafKind, higher_terms
-from mdlcad.mechanics.reduced import UnitNumbers, force_of
+from mdlcad.mechanics.reduced import UnitNumbers
 from mdlcad.mechanics.series import SpringPlan, frame_of, spring_stiffness
 from mdlcad.mechanics.strains import cases_of
 from mdlcad.signoff.measure import BeamSeen, UnitSeen
-
-
-@dataclass(frozen=True, slots=True)
-class Scale:
-    """Units of the network: ``stiffness`` S0 in N/mm, ``length`` X0 in mm."""
-
-    stiffness: float
-    length: float
-
-    @property
-    def force(self) -> float:
-        """F0, N."""
-        return self.stiffness * self.length
-
-
-@dataclass(frozen=True, slots=True)
-class UnitFit:
-    """k = base + swing p and the quartic that come nearest to a unit's law over what its shuttle does."""
-
-    base: float
-    swing: float
-    quartic: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,26 +90,6 @@ def unit_numbers(seen: UnitSeen, sheet: Sheet, beams: float = 0.0, leaves: float
     return UnitNumbers(count, span, one, axial, spring.across)
 
 
-_POINTS = 9
-
-
-def fit_unit(numbers: UnitNumbers, preload: float, swing: float, reaches: Sequence[float], scale: Scale) -> UnitFit:
-    """Fit the network's potential to a unit's law by least squares of the force.
-
-    Args:
-        preload: of the clock block with the clock in its middle, mm; swing: half stroke of the clock, mm.
-        reaches: how far shuttles go at p = 0, 1 and 2, mm.
-    """
-    rows, forces = [], []
-    for p, reach in enumerate(reaches):
-        at = np.linspace(reach / _POINTS, reach, _POINTS)
-        x = at / scale.length
-        rows.append(np.stack([x, p * x, x**3], axis=1))
-        forces.append(force_of(numbers, preload + (p - 1) * swing, at) / scale.force)
-    found = np.linalg.lstsq(np.concatenate(rows), np.concatenate(forces), rcond=None)[0]
-    return UnitFit(*map(float, found))
-
-
 @dataclass(frozen=True, slots=True)
 class LeafLaw:
     """A coupler or rocker by itself: N/mm at its hub's end, across, at its far end; Q, C, B in N/mm^3 and N/mm^2."""
@@ -160,16 +119,19 @@ def spring_numbers(law: LeafLaw, carrier: float, scale: Scale) -> SpringNumbers:
 
     Exact for what is linear; what is beyond takes place in the share of the motion that the flexure itself makes.
     """
-    share = carrier / (carrier + law.far)
+    row = in_row(law.own, law.across, law.far, carrier)
     stiff = scale.length**2 / scale.stiffness
     return SpringNumbers(
-        strength=-law.across * share / scale.stiffness,
-        self_source=law.far * share / scale.stiffness,
-        self_target=(law.own - law.across**2 / (carrier + law.far)) / scale.stiffness,
-        apart=law.quartic * share**4 * stiff,
-        together=law.common * share**4 * stiff,
-        skew=law.skew * share**3 * scale.length / scale.stiffness,
+        strength=-row.strength / scale.stiffness,
+        self_source=row.source / scale.stiffness,
+        self_target=row.target / scale.stiffness,
+        apart=law.quartic * row.share**4 * stiff,
+        together=law.common * row.share**4 * stiff,
+        skew=law.skew * row.share**3 * scale.length / scale.stiffness,
     )
+
+
+_POINTS = 9
 
 
 def bias_numbers(chain: Chain, offset: float, throw: float, scale: Scale, post_radius: float) -> BiasNumbers:

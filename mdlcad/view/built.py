@@ -17,6 +17,7 @@ from mdlcad.artefact import checksum, load
 from mdlcad.errors import UsageError
 from mdlcad.language import Device
 from mdlcad.mechanics import Process, Sizing
+from mdlcad.mechanics.compensation import COMPENSATION_FILE, Compensation, compensated
 from mdlcad.network.model import Network
 from mdlcad.parts.body import Body
 from mdlcad.parts.stiffness import CarrierStiffness
@@ -90,6 +91,8 @@ def read_build(folder: Path, trust: Trust = Trust.BUILT) -> Built:
 
     device, network = artefact("device.json", Device), artefact("network.json", Network)
     sizing, process = artefact("sizing.json", Sizing), artefact("process.json", Process)
+    if COMPENSATION_FILE in report.files:
+        sizing = compensated(sizing, artefact(COMPENSATION_FILE, Compensation))
     placement, parts = artefact("placement.json", Placement), artefact("parts.json", Parts)
     try:
         bodies = bodies_of(parts.bodies)

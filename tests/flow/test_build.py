@@ -50,6 +50,24 @@ def test_the_report_has_the_contract_s_keys_and_says_that_all_holds(built):
     assert {"cells", "process", "seed", "version", "masses", "couplings", "gates", "tiles"} <= set(found)
 
 
+def test_the_k_read_off_the_files_is_the_k_that_was_solved_for(built):
+    """Asked by the network, solved once carriers were known, drawn, and read back from the STEP file."""
+    asked = {mass["name"]: mass for mass in json.loads((built / "network.json").read_text())["masses"]}
+    solved = {unit["mass"]: unit for unit in json.loads((built / "compensation.json").read_text())["units"]}
+    found = {mass["name"]: mass for mass in json.loads((built / "built.json").read_text())["network"]["masses"]}
+    assert asked.keys() == solved.keys() == found.keys()
+    for name, mass in asked.items():
+        for p in (0, 1, 2):
+            left = found[name]["k0"] + p * found[name]["k1"] - mass["k0"] - p * mass["k1"]
+            assert left == pytest.approx(solved[name]["left"][p], abs=0.02)
+            assert p != 1 or abs(left) < 0.02
+    worst = [max(abs(unit["left"][p]) for unit in solved.values()) for p in (0, 1, 2)]
+    assert report(built)["mechanics"]["compensation_left"] == pytest.approx(worst)
+    page = (built / "report.html").read_text()
+    assert "asked, solved, left" in page
+    assert all(f"{unit['preload']:.4f}" in page for unit in solved.values())
+
+
 def test_every_promised_file_is_there_and_hashed(built):
     files = report(built)["files"]
     wanted = [f"{name}.json" for name in ("device", "netlist", "network", "placement", "layout")]

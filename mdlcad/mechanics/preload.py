@@ -1,0 +1,109 @@
+"""Preloads: what the springs at every mass add to it, and the preload with which its unit makes up for that."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from mdlcad.errors import UsageError
+from mdlcad.mechanics.fit import InRow, Scale, UnitCurve, in_row
+from mdlcad.mechanics.leaves import LeafKind, LeafSize
+from mdlcad.mechanics.process import Process
+from mdlcad.mechanics.reduced import sized_numbers
+from mdlcad.mechanics.series import SeriesSpring
+from mdlcad.mechanics.sizes import BiasSize, CouplerSize
+from mdlcad.mechanics.strains import reach_at
+from mdlcad.mechanics.unit import UnitLaw, clock_swing
+from mdlcad.network.model import Network
+
+RIGID_CARRIER = 1e9
+"""N/mm of a carrier that is not known yet, or of none."""
+
+
+def leaf_in_row(leaf: LeafSize, carrier: float) -> InRow:
+    """A coupler or rocker as sized in a row with its carrier, N/mm."""
+    across = leaf.coupling if leaf.kind is LeafKind.ROCKER else -leaf.coupling
+    return in_row(leaf.own, across, leaf.own, min(carrier, RIGID_CARRIER))
+
+
+def self_terms(
+    network: Network,
+    couplers: Sequence[CouplerSize],
+    biases: Sequence[BiasSize],
+    law: UnitLaw,
+    carriers: Mapping[str, float],
+) -> dict[str, float]:
+    """Sum of the self terms of the parts that are built at every mass, in units of S0.
+
+    Args:
+        carriers: stiffness of the carrier under each coupling's far end, N/mm; rigid where there is none.
+    """
+    total = {mass.name: 0.0 for mass in network.masses}
+    for coupling, coupler in zip(network.couplings, couplers, strict=True):
+        row = leaf_in_row(coupler.leaf, carriers.get(coupling.name, RIGID_CARRIER))
+        total[coupling.source] += row.source / law.stiffness_unit
+        total[coupling.target] += row.target / law.stiffness_unit
+    for bias in biases:
+        total[bias.mass] += bias.self_stiffness
+    return total
+
+
+@dataclass(frozen=True, slots=True)
+class Compensator:
+    """Solves preloads: ``asked`` is the network's k at p = 1 of every mass."""
+
+    asked: dict[str, float]
+    curve: UnitCurve
+
+    def preloads(self, springs: Mapping[str, float]) -> dict[str, float]:
+        """The preload of every unit, mm, with which unit and ``springs`` (by mass, S0) together have the k asked for.
+
+        Raises:
+            ArithmeticError: there is none near to what the first term of the law says.
+        """
+        return {name: round(self.curve.preload_for(asked - springs[name]), 4) for name, asked in self.asked.items()}
+
+
+def compensator(
+    network: Network,
+    process: Process,
+    law: UnitLaw,
+    series: SeriesSpring,
+    peaks: Mapping[str, float],
+    springs: Mapping[str, float],
+) -> Compensator:
+    """What solves the preloads of units of this law, with springs of about ``springs`` (by mass, S0).
+
+    Args:
+        peaks: largest |x| of every mass in simulation.
+
+    Raises:
+        UsageError: the beams of the process find no equilibrium at these preloads.
+    """
+    asked = {mass.name: mass.k0 + mass.k1 for mass in network.masses}
+    # the first term of the law, docs/mechanics.md, and a unit of k to either side
+    first = [law.stroke_per_k * (process.unit.kappa0 - asked[name] + springs[name]) for name in asked]
+    least, most = min(first) - law.stroke_per_k, max(first) + law.stroke_per_k
+    reaches = [process.unit.throw_unit * max(reach_at(network, peaks, p).values()) for p in (0.0, 1.0, 2.0)]
+    try:
+        curve = UnitCurve(
+            sized_numbers(process, law, series),
+            clock_swing(network, law),
+            reaches,
+            Scale(law.stiffness_unit, process.unit.throw_unit),
+            least,
+            most,
+        )
+    except ArithmeticError as error:
+        raise UsageError(
+            f"process {process.name}: unit: with preloads of {least:.2f} to {most:.2f} mm {error}; a stiffer series "
+            "spring (fewer series_leaves) or a smaller throw_unit would do"
+        ) from error
+    return Compensator(asked, curve)
+
+
+def room_for(preload: float, softest: float) -> tuple[float, float]:
+    """Least and most preload that a slot holds room for: with the softest carriers allowed, and with rigid ones."""
+    least, most = sorted((preload, softest))
+    return math.floor(least * 1e4) / 1e4, math.ceil(most * 1e4) / 1e4
