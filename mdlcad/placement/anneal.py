@@ -25,6 +25,7 @@ SPAN = 3 * HARD
 """Cost of a column too far: it is found at the start (``columns``), and hardly ever mended once lost."""
 WIRE = 0.06
 ORDER = 0.03
+SHARED = 4.0
 
 # columns of State.row, the tallies of one (channel, row); A hangs on the left of the channel, B on the right
 VIA_A, VIA_B, BIAS_A, BIAS_B, STRAIGHT, POST_A, POST_B, SPOST_A, SPOST_B = range(9)
@@ -50,10 +51,14 @@ def _row_cost(t: Ints, is_open: int, plates: int) -> float:
 
 
 @numba.njit(cache=True, error_model="numpy", forceinline=True)
-def _order_cost(t: Ints) -> float:
-    """What the orders asked for by one row cost: legal, but each takes freedom from the tracks."""
+def _order_cost(t: Ints, plates: int) -> float:
+    """What the orders asked for by one row cost: legal, but each takes freedom from the tracks.
+
+    So does a bias leaf that has not a plate to itself: what shares its plate must stop short of it.
+    """
     a, b = t[VIA_A], t[VIA_B]
-    return float(ORDER * (a * b + t[POST_A] * (a - t[POST_A]) + t[POST_B] * (b - t[POST_B])))
+    shared = max(0, b + t[BIAS_A] - plates) * t[BIAS_A] + max(0, a + t[BIAS_B] - plates) * t[BIAS_B]
+    return float(ORDER * (a * b + t[POST_A] * (a - t[POST_A]) + t[POST_B] * (b - t[POST_B])) + SHARED * shared)
 
 
 @numba.njit(cache=True, error_model="numpy")
@@ -62,7 +67,7 @@ def _piece(t: Ints, items: Ints, is_open: int, plates: int, net: int, side: int,
 
     What hangs on the left must run left of what hangs on the right; on one side, what has a post reaches furthest.
     """
-    cost = -_row_cost(t, is_open, plates) - _order_cost(t)
+    cost = -_row_cost(t, is_open, plates) - _order_cost(t, plates)
     code, n = 2 * net + posted, t[VIA_A + side]
     if sign > 0:
         items[side, n] = code
@@ -74,7 +79,7 @@ def _piece(t: Ints, items: Ints, is_open: int, plates: int, net: int, side: int,
     t[VIA_A + side] += sign
     if posted:
         t[POST_A + side] += sign
-    return cost + _row_cost(t, is_open, plates) + _order_cost(t)
+    return cost + _row_cost(t, is_open, plates) + _order_cost(t, plates)
 
 
 @numba.njit(cache=True, error_model="numpy", forceinline=True)
@@ -270,9 +275,9 @@ def _bias(p: Problem, s: State, mass: int, sign: int) -> float:
     side = s.mass[mass, BIAS_SIDE]
     channel = column + side
     t, is_open, plates = s.row[channel, row], p.is_open[channel, row], int(p.sizes[2])
-    cost = -_row_cost(t, is_open, plates)
+    cost = -_row_cost(t, is_open, plates) - _order_cost(t, plates)
     t[BIAS_B - side] += sign
-    cost += _row_cost(t, is_open, plates)
+    cost += _row_cost(t, is_open, plates) + _order_cost(t, plates)
     end = p.hub_x[column] + (2 * side - 1) * p.sizes[3]
     if _outside(p, channel, row, end):
         cost += sign * HARD

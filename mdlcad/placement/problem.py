@@ -90,21 +90,25 @@ def build(network: Network, lattice: Lattice, rules: LayoutRules) -> Problem:
         ),
         slot=np.array(lattice.slots, np.int32),
         slot_at=slot_at,
-        reach=np.array([max(rules.couplers[c.name], rules.hub_half) + half for c in couplings]),
+        reach=np.array([_counted(max(rules.couplers[c.name], rules.hub_half) + half) for c in couplings]),
         hub_x=np.array(lattice.column_x),
         limits=limits,
         is_open=is_open,
         sizes=np.array(
             [
-                rules.hub_half + half,
-                # the router counts in steps of this
-                math.ceil(rules.track_pitch / RESOLUTION - 1e-6) * RESOLUTION,
+                _counted(rules.hub_half + half),
+                _counted(rules.track_pitch),
                 len(rules.link_plates),
                 max((rules.bias_ends.get(m, r + rules.post_radius) for m, r in rules.biases.items()), default=0.0)
                 - half,
             ]
         ),
     )
+
+
+def _counted(length: float) -> float:
+    """``length`` rounded up to what the router counts in."""
+    return math.ceil(length / RESOLUTION - 1e-6) * RESOLUTION
 
 
 def _rows(key: Ints, count: int) -> tuple[Ints, Ints]:
@@ -157,11 +161,13 @@ def _channels(lattice: Lattice, rules: LayoutRules) -> tuple[Floats, Ints]:
                 low = max(low, left + keep)
             if right is not None:
                 high = min(high, right - keep)
+            low, high = _counted(low), -_counted(-high)
             limits[channel, row] = low, high, high, low
+    pitch = _counted(rules.track_pitch)
     for tab in lattice.tabs:
         if tab.vertical:
             for row in tab.rows:
                 mine = limits[tab.channel, row]
-                mine[2] = min(mine[2], tab.x - rules.track_pitch)
-                mine[3] = max(mine[3], tab.x + rules.track_pitch)
+                mine[2] = min(mine[2], tab.x - pitch)
+                mine[3] = max(mine[3], tab.x + pitch)
     return limits, is_open
