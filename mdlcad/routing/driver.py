@@ -25,8 +25,9 @@ from mdlcad.routing.router import route
 
 STEP = 1.03
 """Ratio of one scale to the next while looking for a first that works."""
-FINE = 2
-"""Of this many parts of a step, those between the last scale that failed and the first that worked are tried too."""
+ROUND = 5.0
+"""Between the last scale that failed and the first that worked, one in the middle is tried, and those at which the
+longest side of the boundary is a multiple of this, mm: sizes that people ask for."""
 MOST_STEPS = 52
 SLACK = 1.05
 """Slots a mass: with fewer, annealing has hardly room to move in."""
@@ -109,8 +110,8 @@ def place_and_route(
         last = scale >= most
         found = search.attempt(min(scale, most), PATIENT if last else QUICK)
         if found is not None:
-            for k in range(1 - FINE, 0):
-                better = search.attempt(min(scale, most) * STEP ** (k / FINE), PATIENT)
+            for finer in _between(min(scale, most), boundary):
+                better = search.attempt(finer, PATIENT)
                 if better is not None:
                     return better
             return found
@@ -119,6 +120,14 @@ def place_and_route(
         scale *= STEP
     words = "" if size.fit is None else f"within {size.fit[0]:g} x {size.fit[1]:g} mm"
     return search.give_up(words)
+
+
+def _between(scale: float, boundary: tuple[tuple[int, int], ...]) -> list[float]:
+    """Scales worth a try less than a step below ``scale``, smallest first."""
+    xs, ys = [x for x, _ in boundary], [y for _, y in boundary]
+    side = max(max(xs) - min(xs), max(ys) - min(ys))
+    first, last = math.ceil(scale / STEP * side / ROUND), math.ceil(scale * side / ROUND - 1e-9)
+    return sorted({scale / math.sqrt(STEP), *(count * ROUND / side for count in range(first, last))})
 
 
 def least_scale(network: Network, boundary: tuple[tuple[int, int], ...], rules: LayoutRules) -> float:

@@ -4,7 +4,7 @@ import pytest
 import shapely
 from shapely import box
 
-from mdlcad.mechanics import load_process
+from mdlcad.mechanics import load_process, process_names
 from mdlcad.parts.body import Body, BodyKind
 from mdlcad.parts.tiles import fits, joint_of, tiles_of
 from tests.export.bodies import body
@@ -115,7 +115,7 @@ def test_a_rib_is_crossed_in_the_middle_of_a_post_and_nowhere_else():
     assert not any(96.0 < x < 104.0 for x in seams)
 
 
-@pytest.mark.parametrize("name", ["pom_cut", "petg_fdm", "pa12_mjf"])
+@pytest.mark.parametrize("name", process_names())
 def test_the_dovetail_of_a_shipped_process_fits_its_rim(name):
     process = load_process(name)
     joint = joint_of(process)
