@@ -1,7 +1,7 @@
 """Places and routes: with several seeds side by side, like an earlier build, by the placer that was asked for.
 
 Of several seeds the best is kept by one total order: a sound layout before one that the checker finds fault with, then
-fewer kept masses moved (of a build like another), then the smaller area, then the shorter carriers, then the lower
+fewer unchanged masses moved (of a build like another), then the smaller area, then the shorter carriers, then the lower
 seed. On the program's grid, where there is no area, it is: fewer moved, fewer crossings, shorter lines, lower seed.
 """
 
@@ -18,7 +18,7 @@ from shapely import Polygon
 from mdlcad.errors import Picture, SignoffError
 from mdlcad.flow.earlier import EarlierBuild
 from mdlcad.mechanics import Process, Sizing
-from mdlcad.network.matching import renamed_masses
+from mdlcad.network.matching import changed_masses, renamed, renamed_masses
 from mdlcad.network.model import Network
 from mdlcad.parts.stiffness import carrier_faults, carrier_stiffnesses
 from mdlcad.placement.keep_grid import place_on_grid_like
@@ -223,14 +223,22 @@ def likeness(work: Work, result: Placed | GridPlacement) -> Likeness:
         _seats(result if isinstance(result, GridPlacement) else result.placement),
     )
     old = {names.get(mass, mass): seat for mass, seat in before.items()}
+    changed = changed_masses(renamed(earlier.network, names), work.network)
     kept = [mass for mass in after if mass in old]
-    shifts = Counter((after[mass][0] - old[mass][0], after[mass][1] - old[mass][1]) for mass in kept)
+    firm = [mass for mass in kept if mass not in changed]
+    shifts = Counter((after[mass][0] - old[mass][0], after[mass][1] - old[mass][1]) for mass in firm)
     # on another lattice all may stand some rows further, which moves none against another
     shift, stayed = min(shifts.items(), key=lambda item: (-item[1], item[0]), default=((0.0, 0.0), 0))
     if isinstance(result, GridPlacement):
         shift, stayed = (0.0, 0.0), shifts[0.0, 0.0]
     return Likeness(
-        earlier.checksum, len(kept), len(kept) - stayed, len(after) - len(kept), len(before) - len(kept), shift
+        earlier.checksum,
+        kept=len(kept),
+        changed=len(kept) - len(firm),
+        moved=len(firm) - stayed,
+        new=len(after) - len(kept),
+        gone=len(before) - len(kept),
+        shift=shift,
     )
 
 

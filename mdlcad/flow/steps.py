@@ -269,7 +269,8 @@ def how_placed(state: State) -> str:
     """How the placement was found, to follow what it is; nothing if with one seed and like no other."""
     words, search = "", need(state.search)
     if search.like is not None:
-        words += f", {search.like.kept - search.like.moved} of {search.like.kept} kept masses in place"
+        firm = search.like.kept - search.like.changed
+        words += f", {firm - search.like.moved} of {firm} unchanged masses in place"
     if search.seeds is not None:
         words += f", seed {search.seeds.won} of {len(search.seeds.tried)}"
     return words

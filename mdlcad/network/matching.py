@@ -12,6 +12,7 @@ from __future__ import annotations
 import hashlib
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
@@ -37,6 +38,40 @@ def renamed_masses(a: Network, b: Network) -> dict[str, str]:
     taken = set(found.values())
     new = [mass for mass in new if mass.name not in taken]
     return found | _alike(a, b, fixed | found, lost, new)
+
+
+def renamed(network: Network, names: Mapping[str, str]) -> Network:
+    """``network`` with masses called anew: old name -> new name."""
+    return replace(
+        network,
+        masses=tuple(replace(mass, name=names.get(mass.name, mass.name)) for mass in network.masses),
+        couplings=tuple(
+            replace(item, source=names.get(item.source, item.source), target=names.get(item.target, item.target))
+            for item in network.couplings
+        ),
+    )
+
+
+def changed_masses(a: Network, b: Network) -> frozenset[str]:
+    """Masses of B that A has under the same name, but of another kind or phase, another bias or other inputs.
+
+    Which way up a mass is used does not count: it computes the same.
+    """
+    before, after = _recipes(a), _recipes(b)
+    return frozenset(name for name, recipe in after.items() if name in before and before[name] != recipe)
+
+
+def _recipes(network: Network) -> dict[str, tuple[object, ...]]:
+    """By mass what it computes: kind, phase, bias and inputs, all as if every mass were upright."""
+    upright = {mass.name: mass.polarity for mass in network.masses}
+    inputs: dict[str, list[tuple[str, str, float]]] = {name: [] for name in upright}
+    for item in network.couplings:
+        strength = item.strength * upright.get(item.source, 1) * upright[item.target]
+        inputs[item.target].append((item.source, item.kind, round(strength, 9)))
+    return {
+        mass.name: (mass.kind, mass.phase, round(mass.bias * mass.polarity, 9), tuple(sorted(inputs[mass.name])))
+        for mass in network.masses
+    }
 
 
 def _edges(network: Network) -> dict[str, list[tuple[str, str]]]:

@@ -26,13 +26,15 @@ from mdlcad.placement.placer import (
 from mdlcad.placement.problem import Ints, Problem, build, realisable
 from mdlcad.placement.state import State, start
 
-PRICES = (1e6, HARD, HARD / 2)
-"""What moving a mass costs: the first at which all can be routed is taken. A broken rule costs ``HARD``, so from the
-second on a mass moves to mend one; for less, masses would move for shorter wires."""
+PRICES = (1e6, 2 * HARD, HARD)
+"""What moving a mass costs: none may, or only to mend two broken rules, or to mend one. (For less, masses would move
+for shorter wires.)"""
 SIDE_PRICE = HARD / 4
 """What it costs to serve a coupling, or to hang a bias leaf, on the other side."""
 WARM, COOL = 8.0, 0.4
 """First and last temperature: warm enough to pass a broken rule on the way, and in the end too cool to leave home."""
+SHORTEN = 0.8, 0.02
+"""The same of a second annealing, which breaks no rule any more, but shortens carriers: the shorter, the stiffer."""
 COLUMN_APART, ROW_APART, OTHER_COLUMN = 4.0, 1.0, 1000.0
 """How far a new mass counts as from its neighbours, for a column and for a row between them; and from its column."""
 
@@ -45,11 +47,13 @@ class Kept:
         slots: (column, row) by mass.
         couplings: channel side (0 left, 1 right) by name, of couplings within a column.
         biases: side of the bias leaf (0 left, 1 right) by mass.
+        changed: masses that are not what they were (other inputs, say): they stay only where nothing is in the way.
     """
 
     slots: Mapping[str, tuple[int, int]]
     couplings: Mapping[str, int]
     biases: Mapping[str, int]
+    changed: frozenset[str] = frozenset()
 
 
 def place_kept(
@@ -57,25 +61,27 @@ def place_kept(
 ) -> PlaceResult:
     """Place ``network`` with every kept mass in its slot, or elsewhere for ``price``. Same arguments, same result.
 
-    At the first of ``PRICES`` only those move whose couplings do not reach from their column.
+    At the first of ``PRICES`` only those move whose couplings do not reach from their column. Masses that have changed
+    move for nothing, but return if no rule is broken by it.
     """
     problem = build(network, lattice, rules)
     home = _homes(network, lattice, rules, kept)
-    at, stiff = home[: len(network.masses), 0], price == PRICES[0]
-    whole = stiff and bool(np.all(at >= 0))
-    slot_of = at.copy() if whole else _seated(problem, at, _columns(problem, lattice, at, stiff, seed))
-    if stiff:
-        # who cannot reach its neighbours from its column has to leave it, whatever that costs
-        home[: len(at), 0] = np.where(problem.slot[slot_of, 0] == problem.slot[np.maximum(at, 0), 0], at, -1)
-    state, source = _held(problem, slot_of, home, price, seed)
-    if whole:
-        moves = 0  # nobody is new: there is nothing to look for
-    else:
-        moves = MOVES_PER_MASS * len(network.masses)
+    at, stiff = home[: len(network.masses), 0].copy(), price == PRICES[0]
+    firm = np.where(np.array([mass.name in kept.changed for mass in network.masses]), -1, at)
+    whole = stiff and bool(np.all(firm >= 0))
+    slot_of = at.copy() if whole else _seated(problem, at, _columns(problem, lattice, firm, stiff, seed))
+    # who cannot reach its neighbours from its column has to leave it, whatever that costs
+    there = problem.slot[slot_of, 0] == problem.slot[np.maximum(firm, 0), 0]
+    held = home.copy()
+    held[: len(at), 0] = np.where(there, firm, -1) if stiff else firm
+    state, source = _held(problem, slot_of, held, price, seed)
+    moves = 0 if whole else MOVES_PER_MASS * len(network.masses)  # if nobody is new there is nothing to look for
     cost = anneal(problem, state, source, moves, WARM, COOL, False)
     slots = state.mass[:, 0]
     if cost == 0 and not whole:
-        slots = _sent_home(problem, state, home, seed)
+        shorter = _resumed(problem, state, held, price, seed)
+        cost = anneal(problem, shorter[0], shorter[1], moves, SHORTEN[0], SHORTEN[1], False)
+        slots = _sent_home(problem, shorter[0], home, firm) if cost == 0 else slots
     return PlaceResult(placement_of(network, lattice, slots, seed), float(cost))
 
 
@@ -120,6 +126,15 @@ def _held(problem: Problem, slot_of: Ints, home: Ints, price: float, seed: int) 
     return state, source
 
 
+def _resumed(
+    problem: Problem, state: State, home: Ints, price: float, seed: int
+) -> tuple[State, npt.NDArray[np.uint64]]:
+    """A state that starts where ``state`` ended."""
+    again, source = _held(problem, state.mass[:, 0].copy(), home, price, seed)
+    again.mass[:, 1], again.side[:] = state.mass[:, 1], state.side
+    return again, source
+
+
 def _all_known(problem: Problem, state: State, home: Ints) -> bool:
     """Whether every side that there is to choose has a home."""
     column = problem.slot[state.mass[:, 0], 0]
@@ -130,17 +145,19 @@ def _all_known(problem: Problem, state: State, home: Ints) -> bool:
     return bool(np.all(sides[within] >= 0) and np.all(biases[biased] >= 0))
 
 
-def _sent_home(problem: Problem, state: State, home: Ints, seed: int) -> Ints:
-    """(M,) the slots of a sound placement, with every mass home again that breaks no rule there."""
+def _sent_home(problem: Problem, state: State, home: Ints, firm: Ints) -> Ints:
+    """(M,) the slots of a sound placement, with every mass home again that breaks no rule there: those that have not
+    changed (``firm``, the slot of each or -1) before those that have."""
     slot_of, at = state.mass[:, 0].copy(), home[: len(state.mass), 0]
     again = True
     while again:
         again = False
-        for mass in np.flatnonzero((at >= 0) & (slot_of != at)).tolist():
+        away = np.flatnonzero((at >= 0) & (slot_of != at)).tolist()
+        for mass in sorted(away, key=lambda mass: int(firm[mass] < 0)):
             trial = slot_of.copy()
             trial[slot_of == at[mass]] = slot_of[mass]
             trial[mass] = at[mass]
-            tried, source = _held(problem, trial, home, 0.0, seed)
+            tried, source = _held(problem, trial, home, 0.0, 0)
             tried.mass[:, 1], tried.side[:] = state.mass[:, 1], state.side
             if anneal(problem, tried, source, 0, WARM, COOL, False) == 0:
                 slot_of, again = trial, True

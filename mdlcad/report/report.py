@@ -104,13 +104,15 @@ class Likeness:
 
     Attributes:
         build: SHA-256 of what was taken from it (of lines "SHA-256  NAME" of its netlist, network, ...).
-        kept: masses that are in both; moved: those of them that are in another slot now, but for the shift.
+        kept: masses that are in both; changed: those of them that are of other inputs, bias or phase now; moved: those
+            that did not change, but are in another slot now, but for the shift.
         new, gone: masses that only this one, or only the earlier one, has.
         shift: columns and rows by which the whole stands elsewhere on a lattice of another size.
     """
 
     build: str
     kept: int
+    changed: int
     moved: int
     new: int
     gone: int

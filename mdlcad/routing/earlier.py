@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from mdlcad.network.matching import renamed_masses
+from mdlcad.network.matching import changed_masses, renamed, renamed_masses
 from mdlcad.network.model import Network
 from mdlcad.placement.keep import Kept
 from mdlcad.placement.placement import Placement
@@ -35,14 +35,7 @@ def under_new_names(earlier: Earlier, network: Network) -> Earlier:
         for item in earlier.network.couplings
     }
     return Earlier(
-        replace(
-            earlier.network,
-            masses=tuple(replace(mass, name=names.get(mass.name, mass.name)) for mass in earlier.network.masses),
-            couplings=tuple(
-                replace(item, source=names.get(item.source, item.source), target=names.get(item.target, item.target))
-                for item in earlier.network.couplings
-            ),
-        ),
+        renamed(earlier.network, names),
         replace(
             earlier.placement,
             masses=tuple(replace(unit, mass=names.get(unit.mass, unit.mass)) for unit in earlier.placement.masses),
@@ -97,4 +90,5 @@ def kept_of(earlier: Earlier, network: Network, slots: Mapping[str, tuple[int, i
         {mass: slot for mass, slot in slots.items() if mass in now},
         couplings,
         {leaf.mass: int(leaf.side is Side.RIGHT) for leaf in earlier.layout.biases},
+        changed_masses(earlier.network, network),
     )

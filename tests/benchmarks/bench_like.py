@@ -1,11 +1,12 @@
 """How much of a device stays when its program is edited: with --like the earlier build, and without.
 
-    ./run python -m tests.benchmarks.bench_like [FOLDER]
+    ./run python -m tests.benchmarks.bench_like [FOLDER [WORDS]]
 
 Every edit is made to an example, which is built as far as its layout three times: as it was, edited, and edited with
 ``--like`` the first. A mass has *changed itself* if it is new, or of another phase or bias, or has other inputs. Of
 those that have not, the table tells how many are elsewhere, by slot and in mm, and how much of the routing (trunks and
-rungs) of the unchanged nets is where it was. ``FOLDER`` keeps the builds; what is there already is not built again.
+rungs) of the unchanged nets is where it was; where a device has grown, against the shift of its unchanged masses.
+``FOLDER`` keeps the builds; what is there already is not built again. ``WORDS`` picks the edits whose names hold them.
 """
 
 from __future__ import annotations
@@ -97,14 +98,20 @@ def compare(before: Path, after: Path) -> Stayed:
     # on a lattice of another size all may stand some rows further, which moves none against another
     usual = Counter(steps.values()).most_common(1)[0][0] if steps else (0, 0)
     moved = [n for n in same if steps[n] != usual]
-    apart = [
-        n for n in same if abs(places[0][n].x - places[1][n].x) > 0.01 or abs(places[0][n].y - places[1][n].y) > 0.01
-    ]
+    apart, by = _apart([(places[1][n].x - places[0][n].x, places[1][n].y - places[0][n].y) for n in same])
     targets = [_targets(network) for network in networks]
     nets = {name for name in same if targets[0].get(name) == targets[1].get(name)}
-    pieces = [_pieces(load(folder, "layout.json", Layout), nets) for folder in (before, after)]
+    shifts = ((0.0, 0.0), by)
+    pieces = [_pieces(load(f, "layout.json", Layout), nets, s) for f, s in zip((before, after), shifts, strict=True)]
     routed = len(pieces[0] & pieces[1]) / len(pieces[1]) if pieces[1] else 1.0
-    return Stayed(len(same), len(moved), len(apart), len(whats[1]) - len(same), routed)
+    return Stayed(len(same), len(moved), apart, len(whats[1]) - len(same), routed)
+
+
+def _apart(steps: list[tuple[float, float]]) -> tuple[int, tuple[float, float]]:
+    """How many of ``steps`` (mm) are not the usual one, and that: a device that has grown may stand elsewhere whole."""
+    rounded = [(round(x, 2), round(y, 2)) for x, y in steps]
+    usual, count = Counter(rounded).most_common(1)[0] if rounded else ((0.0, 0.0), 0)
+    return len(rounded) - count, usual
 
 
 def _natures(network: Network) -> dict[str, object]:
@@ -123,9 +130,17 @@ def _targets(network: Network) -> dict[str, set[str]]:
     return found
 
 
-def _pieces(layout: Layout, nets: set[str]) -> set[tuple[object, ...]]:
-    trunks = {(t.net, t.x, t.y_low, t.y_high) for t in layout.trunks if t.net in nets}
-    return trunks | {(r.net, r.plate, r.y, r.left.x, r.right.x) for r in layout.rungs if r.net in nets}
+def _pieces(layout: Layout, nets: set[str], by: tuple[float, float]) -> set[tuple[object, ...]]:
+    """Trunks and rungs of ``nets``, moved back by ``by`` (mm)."""
+
+    def x(at: float) -> float:
+        return round(at - by[0], 1)
+
+    def y(at: float) -> float:
+        return round(at - by[1], 1)
+
+    trunks = {(t.net, x(t.x), y(t.y_low), y(t.y_high)) for t in layout.trunks if t.net in nets}
+    return trunks | {(r.net, r.plate, y(r.y), x(r.left.x), x(r.right.x)) for r in layout.rungs if r.net in nets}
 
 
 def made(source: Path, place: Path, like: Path | None, last: str, say: Callable[[str], None]) -> Path:

@@ -14,7 +14,7 @@ from mdlcad.compare.sections import check_agreement, difference
 from mdlcad.errors import UsageError
 from mdlcad.language import Device, read_device
 from mdlcad.mapping import load_library, map_netlist
-from mdlcad.network.matching import renamed_masses
+from mdlcad.network.matching import changed_masses, renamed_masses
 from mdlcad.network.model import Network
 from mdlcad.synthesis import synthesise
 
@@ -87,6 +87,22 @@ def test_a_mass_renamed_and_rewired_is_still_the_same(network):
     cut = next(c for c in network.couplings if name in (c.source, c.target))
     other = rename(replace(network, couplings=tuple(c for c in network.couplings if c != cut)), {name: "new"})
     assert renamed_masses(network, other) == {name: "new"}
+
+
+def test_a_mass_has_changed_if_it_computes_otherwise_and_not_if_it_is_turned_over(network):
+    turned = network.masses[-1].name
+    over = replace(
+        network,
+        masses=tuple(replace(m, polarity=-m.polarity, bias=-m.bias) if m.name == turned else m for m in network.masses),
+        couplings=tuple(
+            replace(c, strength=-c.strength) if turned in (c.source, c.target) else c for c in network.couplings
+        ),
+    )
+    assert changed_masses(network, over) == frozenset()
+    cut = network.couplings[0]
+    assert changed_masses(network, replace(network, couplings=network.couplings[1:])) == {cut.target}
+    later = replace(network.masses[0], phase=(network.masses[0].phase + 1) % 3)
+    assert changed_masses(network, replace(network, masses=(later, *network.masses[1:]))) == {later.name}
 
 
 def test_an_unrelated_mass_is_not_a_renamed_one(network):

@@ -74,6 +74,18 @@ def test_who_stands_where_it_cannot_moves_for_a_price(grid: Lattice, kept: Kept)
     assert place_kept(network, grid, rules, wrong, PRICES[-1], 8).cost == 0
 
 
+def test_who_has_changed_moves_for_nothing_and_nobody_else_does(grid: Lattice, kept: Kept) -> None:
+    """The same two masses exchanged, but known to have changed: even the first price may mend that, by them alone."""
+    network, _, rules = small()
+    order = sorted(kept.slots, key=lambda mass: kept.slots[mass])
+    swapped = {**kept.slots, order[0]: kept.slots[order[-1]], order[-1]: kept.slots[order[0]]}
+    freed = replace(kept, slots=swapped, changed=frozenset((order[0], order[-1])))
+    result = place_kept(network, grid, rules, freed, PRICES[0], 8)
+    now = slots(result.placement)
+    assert result.cost == 0
+    assert {mass for mass in order if now[mass] != swapped[mass]} <= freed.changed
+
+
 @pytest.mark.parametrize("placer", [AnnealPlacer(), PaperPlacer()])
 def test_on_the_programs_grid_all_stay_but_the_new(placer: AnnealPlacer | PaperPlacer) -> None:
     network = maze()
