@@ -1,7 +1,8 @@
-"""Compensation, once carriers are known: every unit's preload solved so that its mass has the k the network asks for.
+"""Compensation, once carriers are known: couplers and preloads solved so that masses have what the network asks for.
 
-Sizing solves preloads with rigid carriers and keeps room for those with the softest carriers that are allowed. A routed
-carrier gives way: its coupler is weaker, and so are its self terms, and the preload that makes up for them is less.
+A routed carrier gives way: its coupler is weaker, and so are its self terms. The coupler is drawn stiffer for it, with
+lower legs on the same length, in steps and as far as its strain allows. Then every unit's preload is solved with the
+springs that this leaves. Sizing keeps room for every preload down to that of the softest carriers allowed.
 """
 
 from __future__ import annotations
@@ -13,12 +14,12 @@ from pathlib import Path
 from mdlcad.artefact import load
 from mdlcad.errors import UsageError
 from mdlcad.mechanics.findings import Finding, findings_of
-from mdlcad.mechanics.leaves import trim
-from mdlcad.mechanics.preload import compensator, leaf_in_row, self_terms
+from mdlcad.mechanics.leaves import LeafSize, stiffened, trim
+from mdlcad.mechanics.preload import COUPLER_STEP, RIGID_CARRIER, compensator, leaf_in_row, self_terms
 from mdlcad.mechanics.process import Process
-from mdlcad.mechanics.sizes import UnitSize
-from mdlcad.mechanics.sizing import Sizing
-from mdlcad.mechanics.strains import unit_strains
+from mdlcad.mechanics.sizes import CouplerSize, UnitSize
+from mdlcad.mechanics.sizing import Sizing, coupler_size
+from mdlcad.mechanics.strains import cases_of, unit_strains
 from mdlcad.network.model import Network
 
 COMPENSATION_FILE = "compensation.json"
@@ -51,13 +52,19 @@ class UnitCompensation:
 
 
 @dataclass(frozen=True, slots=True)
-class CouplerGive:
-    """What a ``carrier`` (N/mm) leaves of a coupling: its strength as ``asked`` by the network, and as ``left``."""
+class CouplerCompensation:
+    """How one coupler makes up for its carrier.
 
-    coupling: str
+    Attributes:
+        carrier: its stiffness, N/mm; asked: the network's strength; given: what the carrier would leave of the
+            coupler as sized; left: what it leaves of the coupler as drawn, ``size``.
+    """
+
     carrier: float
     asked: float
+    given: float
     left: float
+    size: CouplerSize
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,14 +77,14 @@ class Compensation:
     """
 
     units: tuple[UnitCompensation, ...]
-    couplers: tuple[CouplerGive, ...]
+    couplers: tuple[CouplerCompensation, ...]
     strain_peak: float
     strain_settled: float
     findings: tuple[Finding, ...]
 
 
 def compensate(network: Network, process: Process, sizing: Sizing, carriers: Mapping[str, float]) -> Compensation:
-    """Solve every unit's preload.
+    """Solve every coupler's stiffness and every unit's preload.
 
     Args:
         sizing: as ``size`` made it; carriers: N/mm, by coupling.
@@ -88,7 +95,8 @@ def compensate(network: Network, process: Process, sizing: Sizing, carriers: Map
     """
     law, series = sizing.law, sizing.series
     peaks = {unit.mass: unit.amplitude / process.unit.throw_unit for unit in sizing.units}
-    springs = self_terms(network, sizing.couplers, sizing.biases, law, carriers)
+    couplers = _couplers(network, process, sizing, carriers)
+    springs = self_terms(network, [item.size for item in couplers], sizing.biases, law, carriers)
     solver = compensator(network, process, law, series, peaks, springs)
     preloads = solver.preloads(springs)
     strains = unit_strains(network, process, law, series, preloads, peaks)
@@ -111,23 +119,58 @@ def compensate(network: Network, process: Process, sizing: Sizing, carriers: Map
                 trim(strains.beams[mass.name]),
             )
         )
-    couplers = []
-    for coupling, part in zip(network.couplings, sizing.couplers, strict=True):
-        if coupling.name in carriers:
-            share = leaf_in_row(part.leaf, carriers[coupling.name]).share
-            left = trim(part.strength * share)
-            couplers.append(CouplerGive(coupling.name, carriers[coupling.name], coupling.strength, left))
-    draft = Compensation(tuple(units), tuple(couplers), trim(strains.peak), trim(strains.settled), ())
+    draft = Compensation(tuple(units), couplers, trim(strains.peak), trim(strains.settled), ())
     new = compensated(sizing, draft)
-    found = findings_of(network, process, law, new.series, new.units, sizing.couplers, sizing.biases, sizing.rules)
+    found = findings_of(network, process, law, new.series, new.units, new.couplers, sizing.biases, sizing.rules)
     return replace(draft, findings=found)
 
 
+def _couplers(
+    network: Network, process: Process, sizing: Sizing, carriers: Mapping[str, float]
+) -> tuple[CouplerCompensation, ...]:
+    law = sizing.law
+    known: dict[tuple[LeafSize, int], LeafSize] = {}
+    found = []
+    for coupling, part in zip(network.couplings, sizing.couplers, strict=True):
+        carrier = min(carriers.get(coupling.name, RIGID_CARRIER), RIGID_CARRIER)
+        leaf = part.leaf
+        # f c K / (K + f s) = c; a carrier no stiffer than its coupler is beyond help, and an error of the design rules
+        step = round((1.0 / (1.0 - leaf.own / carrier) - 1.0) / COUPLER_STEP) if carrier > 2.0 * leaf.own else 0
+        drawn = coupler_size(coupling, _stiffer(leaf, step, known, process, sizing), process, law)
+        found.append(
+            CouplerCompensation(
+                trim(carrier),
+                coupling.strength,
+                trim(part.strength * leaf_in_row(leaf, carrier).share),
+                trim(drawn.strength * leaf_in_row(drawn.leaf, carrier).share),
+                drawn,
+            )
+        )
+    return tuple(found)
+
+
+def _stiffer(
+    leaf: LeafSize, step: int, known: dict[tuple[LeafSize, int], LeafSize], process: Process, sizing: Sizing
+) -> LeafSize:
+    """``leaf`` stiffer by so many steps, or by as many as leave it within the limits that it keeps itself."""
+    if step == 0:
+        return leaf
+    if (leaf, step) not in known:
+        try:
+            cases = cases_of(leaf.kind, sizing.rules.throw, 0.0)
+            found = stiffened(leaf, 1.0 + step * COUPLER_STEP, cases, process, sizing.law)
+        except ValueError:
+            found = replace(leaf, misses=("equilibrium",))
+        better = len(found.misses) <= len(leaf.misses)
+        known[leaf, step] = found if better else _stiffer(leaf, step - 1, known, process, sizing)
+    return known[leaf, step]
+
+
 def compensated(sizing: Sizing, found: Compensation) -> Sizing:
-    """The sizing with the preloads that were solved, and the strains that go with them.
+    """The sizing with the preloads and couplers that were solved, and the strains that go with them.
 
     Raises:
-        UsageError: a unit of the sizing has no preload; the files of a folder contradict each other.
+        UsageError: a unit of the sizing has no preload, or a coupling no coupler; the folder's files contradict.
     """
     solved = {item.mass: item for item in found.units}
 
@@ -139,8 +182,21 @@ def compensated(sizing: Sizing, found: Compensation) -> Sizing:
             )
         return replace(old, compensation=0.0 - new.springs, preload=new.preload, strain=new.strain)
 
-    series = replace(sizing.series, strain=found.strain_peak, strain_settled=found.strain_settled)
-    return replace(sizing, units=tuple(map(unit, sizing.units)), series=series, findings=found.findings)
+    drawn = {item.size.coupling: item.size for item in found.couplers}
+
+    def coupler(old: CouplerSize) -> CouplerSize:
+        new = drawn.get(old.coupling)
+        if new is None:
+            raise UsageError(f"{COMPENSATION_FILE}: has no coupler {old.coupling!r} of sizing.json; build it again")
+        return new
+
+    return replace(
+        sizing,
+        units=tuple(map(unit, sizing.units)),
+        couplers=tuple(map(coupler, sizing.couplers)),
+        series=replace(sizing.series, strain=found.strain_peak, strain_settled=found.strain_settled),
+        findings=found.findings,
+    )
 
 
 def final_sizing(folder: Path) -> Sizing:

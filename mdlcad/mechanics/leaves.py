@@ -135,6 +135,32 @@ def size_leaf(
     return _with_quartic(best, cases, process)
 
 
+LOWEST_LEGS = 0.3
+"""Least amplitude of a meander, as a share of the height it may fill: lower ones are more bridge than leg, and
+extraction looks for legs at a fifth of the height."""
+
+
+def stiffened(
+    leaf: LeafSize, factor: float, cases: tuple[tuple[float, float], ...], process: Process, law: UnitLaw
+) -> LeafSize:
+    """A coupler or rocker ``factor`` times as stiff and as long: the same meander with lower legs.
+
+    The fields ``misses`` and ``strain`` say whether it still keeps all limits in ``cases``.
+
+    Raises:
+        ValueError: legs would be too low, or it finds no equilibrium at its farthest.
+    """
+    shape = leaf.shape
+
+    def excess(amplitude: float) -> float:
+        at = _stiffness(leaf.kind, shape.wall, shape.legs, amplitude, process)
+        return at(shape.pitch) / (factor * leaf.coupling) - 1.0
+
+    amplitude = round(brentq(excess, LOWEST_LEGS * law.shuttle_height, shape.amplitude, xtol=1e-5), 3)
+    found = _examine(leaf.kind, replace(shape, amplitude=amplitude), cases, process, rung_sheet(process), law)
+    return _with_quartic(_held_to_strain(found, cases, process, rung_sheet(process), law), cases, process)
+
+
 def _held_to_strain(
     leaf: LeafSize, cases: tuple[tuple[float, float], ...], process: Process, sheet: Sheet, law: UnitLaw
 ) -> LeafSize:

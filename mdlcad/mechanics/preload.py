@@ -17,6 +17,10 @@ from mdlcad.mechanics.strains import reach_at
 from mdlcad.mechanics.unit import UnitLaw, clock_swing
 from mdlcad.network.model import Network
 
+COUPLER_STEP = 0.04
+"""Steps of stiffness, relative, in which couplers are drawn stiffer to make up for their carriers' give. A finer one
+would leave less (here at most half of it, where strain allows it) and make more parts that differ."""
+
 RIGID_CARRIER = 1e9
 """N/mm of a carrier that is not known yet, or of none."""
 
@@ -103,7 +107,6 @@ def compensator(
     return Compensator(asked, curve)
 
 
-def room_for(preload: float, softest: float) -> tuple[float, float]:
-    """Least and most preload that a slot holds room for: with the softest carriers allowed, and with rigid ones."""
-    least, most = sorted((preload, softest))
-    return math.floor(least * 1e4) / 1e4, math.ceil(most * 1e4) / 1e4
+def room_for(least: float, most: float) -> tuple[float, float]:
+    """The least and most preload that a slot holds room for, with what rounding takes."""
+    return math.floor(min(least, most) * 1e4) / 1e4, math.ceil(max(least, most) * 1e4) / 1e4

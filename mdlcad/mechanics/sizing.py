@@ -10,7 +10,7 @@ from statistics import median_low
 from mdlcad.errors import UsageError
 from mdlcad.mechanics.findings import Finding, findings_of
 from mdlcad.mechanics.leaves import LeafKind, LeafSize, bias_offset, eye_radius, size_leaf, trim
-from mdlcad.mechanics.preload import compensator, room_for, self_terms
+from mdlcad.mechanics.preload import COUPLER_STEP, compensator, room_for, self_terms
 from mdlcad.mechanics.process import PlateRole, Process
 from mdlcad.mechanics.rules import LayoutRules
 from mdlcad.mechanics.series import SeriesSpring, series_spring
@@ -61,6 +61,8 @@ def size(network: Network, process: Process, peak: Mapping[str, float]) -> Sizin
     solver = compensator(network, process, law, series, peak, absorbed)
     try:
         preloads, softest = solver.preloads(absorbed), solver.preloads(softened)
+        # couplers drawn stiffer for their carriers may overdo it by half a step
+        most = solver.preloads({name: (1.0 + COUPLER_STEP / 2.0) * value for name, value in absorbed.items()})
     except ArithmeticError as error:
         raise UsageError(f"process {process.name}: unit: {error}") from error
     strains = unit_strains(network, process, law, series, preloads, peak)
@@ -72,7 +74,7 @@ def size(network: Network, process: Process, peak: Mapping[str, float]) -> Sizin
             compensation_network=mass.compensation,
             compensation=trim(0.0 - absorbed[mass.name]),
             preload=preloads[mass.name],
-            room=room_for(preloads[mass.name], softest[mass.name]),
+            room=room_for(softest[mass.name], most[mass.name]),
             amplitude=process.unit.throw_unit * peak[mass.name],
             strain=trim(strains.beams[mass.name]),
         )
@@ -90,23 +92,22 @@ def _up(value: float) -> float:
 
 def _couplers(network: Network, process: Process, law: UnitLaw, throw: float) -> tuple[CouplerSize, ...]:
     sized: dict[float, LeafSize] = {}
-    result = []
-    scale = process.unit.throw_unit**2 / law.stiffness_unit
     for coupling in network.couplings:
         if coupling.strength not in sized:
             sized[coupling.strength] = _coupler_leaf(coupling, process, law, throw)
-        leaf = sized[coupling.strength]
-        sign = math.copysign(1.0, coupling.strength)
-        result.append(
-            CouplerSize(
-                coupling.name,
-                leaf,
-                trim(sign * leaf.coupling / law.stiffness_unit),
-                trim(leaf.own / law.stiffness_unit),
-                trim(leaf.quartic * scale),
-            )
-        )
-    return tuple(result)
+    return tuple(coupler_size(item, sized[item.strength], process, law) for item in network.couplings)
+
+
+def coupler_size(coupling: Coupling, leaf: LeafSize, process: Process, law: UnitLaw) -> CouplerSize:
+    """What ``leaf`` does as that coupling."""
+    sign = math.copysign(1.0, coupling.strength)
+    return CouplerSize(
+        coupling.name,
+        leaf,
+        trim(sign * leaf.coupling / law.stiffness_unit),
+        trim(leaf.own / law.stiffness_unit),
+        trim(leaf.quartic * process.unit.throw_unit**2 / law.stiffness_unit),
+    )
 
 
 def _coupler_leaf(coupling: Coupling, process: Process, law: UnitLaw, throw: float) -> LeafSize:
@@ -187,7 +188,8 @@ def _rules(
 ) -> LayoutRules:
     unit, pin, link = process.unit, process.pin, process.link
     hub_half = pin.hub_gap / 2.0 + pin.side + 2.0 * pin.wall
-    clock_throw = _up(clock_swing(network, law))
+    # hundredths: what it is rounded up by, every slot has to make room for
+    clock_throw = round(math.ceil(clock_swing(network, law) / 0.01 - 1e-9) * 0.01, 6)
     overrun = max(0.0, clock_throw - min(item.room[0] for item in units))
     left = _up(hub_half + unit.span + unit.rib_width)
     right = _up(hub_half + unit.span + series.reach + overrun + link.gap)

@@ -210,12 +210,17 @@ def measure_leaf(name: str, section: Polygon, hub_x: float, post_x: float | None
         raise SignoffError(f"{name}: its outline is not that of a flexure") from error
 
 
+_LEVEL = 0.2
+"""Where lines across a flexure's legs are laid, as a share of its block's height: beyond its pin and the
+bridges in its middle, below the bridges of the lowest legs (``mechanics.leaves.stiffened``)."""
+
+
 def _flexure(section: Polygon, hub_x: float, post_x: float | None) -> LeafSeen:
     low_x, low_y, high_x, high_y = section.bounds
     y, height = (low_y + high_y) / 2.0, high_y - low_y
     out = 1.0 if abs(high_x - hub_x) > abs(low_x - hub_x) else -1.0
     far = high_x if out > 0 else low_x
-    block = spans_at_y(section, y + 0.27 * height)
+    block = spans_at_y(section, y + _LEVEL * height)
     face = block[0][1] if out > 0 else block[-1][0]
     if post_x is None:
         return LeafSeen((_meander(section, face, far, y, height, out),), None)
@@ -239,8 +244,8 @@ def _meander(section: Polygon, face: float, end: float, y: float, height: float,
     def inside(spans: list[Span]) -> list[Span]:
         return [span for span in spans if low + 1e-3 < _middle(span) < high - 1e-3 and _width(span) < high - low - 1e-3]
 
-    upper = [s for s in inside(spans_at_y(section, y + 0.27 * height)) if low < s[0] and s[1] < high]
-    lower = [s for s in inside(spans_at_y(section, y - 0.27 * height)) if low < s[0] and s[1] < high]
+    upper = [s for s in inside(spans_at_y(section, y + _LEVEL * height)) if low < s[0] and s[1] < high]
+    lower = [s for s in inside(spans_at_y(section, y - _LEVEL * height)) if low < s[0] and s[1] < high]
     legs: list[Span] = []
     for span in sorted(upper + lower, key=lambda s: out * _middle(s)):
         if not legs or abs(_middle(span) - _middle(legs[-1])) > 0.1:

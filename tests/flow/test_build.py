@@ -54,13 +54,18 @@ def test_the_k_read_off_the_files_is_the_k_that_was_solved_for(built):
     """Asked by the network, solved once carriers were known, drawn, and read back from the STEP file."""
     asked = {mass["name"]: mass for mass in json.loads((built / "network.json").read_text())["masses"]}
     solved = {unit["mass"]: unit for unit in json.loads((built / "compensation.json").read_text())["units"]}
-    found = {mass["name"]: mass for mass in json.loads((built / "built.json").read_text())["network"]["masses"]}
+    network = json.loads((built / "built.json").read_text())["network"]
+    found = {mass["name"]: mass for mass in network["masses"]}
     assert asked.keys() == solved.keys() == found.keys()
     for name, mass in asked.items():
         for p in (0, 1, 2):
             left = found[name]["k0"] + p * found[name]["k1"] - mass["k0"] - p * mass["k1"]
             assert left == pytest.approx(solved[name]["left"][p], abs=0.02)
             assert p != 1 or abs(left) < 0.02
+    links = {f"{item['source']}->{item['target']}": item for item in network["couplings"]}
+    for item in json.loads((built / "compensation.json").read_text())["couplers"]:
+        assert links[item["size"]["coupling"]]["strength"] == pytest.approx(item["left"], rel=5e-3)
+        assert item["left"] == pytest.approx(item["asked"], rel=0.02)
     worst = [max(abs(unit["left"][p]) for unit in solved.values()) for p in (0, 1, 2)]
     assert report(built)["mechanics"]["compensation_left"] == pytest.approx(worst)
     page = (built / "report.html").read_text()

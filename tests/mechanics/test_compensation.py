@@ -10,7 +10,11 @@ from mdlcad.mechanics.beam.large import LargeFrame
 from mdlcad.mechanics.beam.unit import held, unit_model
 from mdlcad.mechanics.compensation import Compensation, compensate, compensated
 from mdlcad.mechanics.fit import Scale, UnitCurve, fit_unit, in_row
+from mdlcad.mechanics.flexure import signal_matrix
 from mdlcad.mechanics.frame import Y, dof
+from mdlcad.mechanics.leaves import chain_of
+from mdlcad.mechanics.preload import COUPLER_STEP
+from mdlcad.mechanics.process import PlateRole
 from mdlcad.mechanics.reduced import sized_numbers
 from mdlcad.mechanics.strains import reach_at
 from mdlcad.mechanics.unit import clock_swing
@@ -68,17 +72,50 @@ def test_every_mass_has_the_k_that_is_asked_for(device: Device, solved: Compensa
     assert not [item for item in solved.findings if item.rule == "preload_room"]
 
 
-def test_softer_carriers_ask_for_less_preload_within_the_room_kept(
-    device: Device, carriers: dict[str, float], solved: Compensation
-) -> None:
-    bound = {unit.mass: unit for unit in device.sizing.units}
-    coupled = {name for coupling in device.network.couplings for name in (coupling.source, coupling.target)}
-    for unit in solved.units:
-        assert bound[unit.mass].room[0] <= unit.preload <= bound[unit.mass].room[1]
-        if unit.mass in coupled:
-            assert unit.preload < unit.preload_sized
-        else:
-            assert unit.preload == unit.preload_sized
+def test_couplers_make_up_for_their_carriers(device: Device, solved: Compensation) -> None:
+    """The drawn leaf's own frame, in a row with its carrier, has the strength asked for to half a step."""
+    for item in solved.couplers:
+        matrix = signal_matrix(chain_of(item.size.leaf.kind, item.size.leaf.shape, device.process))
+        across = matrix[0, 1] * item.carrier / (item.carrier + matrix[1, 1])
+        assert -across / device.sizing.law.stiffness_unit == pytest.approx(item.left, rel=2e-3)
+        assert item.left == pytest.approx(item.asked, rel=COUPLER_STEP / 2 + 0.005)
+        assert abs(item.given) < 0.97 * abs(item.asked) and abs(item.given) < abs(item.left)
+        assert not item.size.leaf.misses
+    sized = {item.coupling: item.leaf for item in device.sizing.couplers}
+    for item in solved.couplers:
+        before, after = sized[item.size.coupling], item.size.leaf
+        assert (after.reach, after.shape.pitch, after.shape.wall) == (
+            before.reach,
+            before.shape.pitch,
+            before.shape.wall,
+        )
+        assert 0.7 * before.shape.amplitude < after.shape.amplitude < before.shape.amplitude
+
+
+def test_a_coupler_is_not_drawn_stiffer_than_its_strain_allows(device: Device, carriers: dict[str, float]) -> None:
+    """Its sheet's limit just above what the rocker is strained as sized: the coupler is mended, the rocker is not."""
+    (plate,) = {device.process.material(plate) for plate in device.process.plates(PlateRole.RUNG)}
+    straight, turned = sorted(device.sizing.couplers, key=lambda item: item.leaf.strain)
+    name = next(key for key, material in device.process.materials.items() if material == plate)
+    tight = replace(plate, strain_limit=turned.leaf.strain * 1.0001)
+    process = replace(device.process, materials=device.process.materials | {name: tight})
+    found = {item.size.coupling: item for item in compensate(device.network, process, device.sizing, carriers).couplers}
+    assert found[turned.coupling].size == turned
+    assert found[turned.coupling].left == found[turned.coupling].given
+    assert abs(found[straight.coupling].left) > abs(found[straight.coupling].given)
+
+
+def test_rigid_carriers_leave_all_as_it_was_sized(device: Device) -> None:
+    found = compensate(device.network, device.process, device.sizing, {})
+    assert [item.size for item in found.couplers] == list(device.sizing.couplers)
+    assert [unit.preload for unit in found.units] == [unit.preload for unit in device.sizing.units]
+
+
+def test_preloads_stay_within_the_room_that_is_kept(device: Device, solved: Compensation) -> None:
+    for unit, sized in zip(solved.units, device.sizing.units, strict=True):
+        assert sized.room[0] <= unit.preload <= sized.room[1]
+        assert unit.preload_sized == sized.preload
+    assert solved.units[5].preload == solved.units[5].preload_sized  # m5 has no springs
 
 
 def test_a_preload_beyond_its_room_is_found(device: Device, carriers: dict[str, float]) -> None:
@@ -115,5 +152,8 @@ def test_the_sizing_takes_over_what_was_solved(device: Device, solved: Compensat
     assert [unit.preload for unit in new.units] == [unit.preload for unit in solved.units]
     assert (new.series.strain, new.findings) == (solved.strain_peak, solved.findings)
     assert new.rules == device.sizing.rules
+    assert [item.leaf for item in new.couplers] == [item.size.leaf for item in solved.couplers]
+    with pytest.raises(UsageError, match="no coupler 'm0->m3'"):
+        compensated(device.sizing, replace(solved, couplers=solved.couplers[1:]))
     with pytest.raises(UsageError, match="no preload for the unit 'm5'"):
         compensated(device.sizing, replace(solved, units=solved.units[:-1]))

@@ -86,10 +86,20 @@ def test_preloads_that_know_the_carriers_leave_nothing_in_the_middle(device: Dev
     """The device as drawn, its clock pins where the solved preloads put them: k read off it is the k asked for."""
     carriers = carrier_stiffnesses(device.network, device.placement, device.layout, device.sizing, device.process)
     stiffness = {item.coupling: item.stiffness for item in carriers}
-    solved = {item.mass: item for item in compensate(device.network, device.process, device.sizing, stiffness).units}
+    found = compensate(device.network, device.process, device.sizing, stiffness)
+    solved = {item.mass: item for item in found.units}
     drawn = drawn_of(built)
     units = {mass: replace(seen, preload=solved[mass].preload) for mass, seen in drawn.units.items()}
-    moved = Built(replace(drawn, units=units), device.network, device.sizing, carriers, device.process)
+    shapes = {item.size.coupling: tuple(item.size.leaf.shape.path()) for item in found.couplers}
+    couplers = tuple(
+        replace(
+            item, leaf=replace(item.leaf, halves=tuple(replace(h, nodes=shapes[item.name]) for h in item.leaf.halves))
+        )
+        for item in drawn.couplers
+    )
+    moved = Built(
+        replace(drawn, units=units, couplers=couplers), device.network, device.sizing, carriers, device.process
+    )
     for mass, nominal in zip(moved.network.masses, device.network.masses, strict=True):
         assert mass.k0 + mass.k1 == pytest.approx(nominal.k0 + nominal.k1, abs=0.01)
         left = solved[mass.name].left
