@@ -11,6 +11,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from mdlcad.mechanics.decks import Deck, deck_of_plate, plate_in
 from mdlcad.mechanics.flexure import RIGID, Sheet
 from mdlcad.mechanics.frame import TURN, Beam, Frame, Spring, Tie, X, Y, dof
 from mdlcad.mechanics.leaves import LeafKind, trim
@@ -18,7 +19,8 @@ from mdlcad.mechanics.process import Plate, PlateRole, Process
 from mdlcad.mechanics.rules import LayoutRules
 from mdlcad.mechanics.sizing import Sizing, turn_stiffness
 from mdlcad.network.model import Network
-from mdlcad.placement.placement import Placement
+from mdlcad.placement.decks import Lean
+from mdlcad.placement.placement import PlacedMass, Placement
 from mdlcad.routing.layout import EndKind, Layout, Rung, Trunk
 
 
@@ -84,18 +86,21 @@ def carrier_stiffnesses(
 ) -> tuple[CarrierStiffness, ...]:
     """One entry for every coupling that the layout realises, in the network's order.
 
+    Args:
+        process: with the plates of both decks, if the device has two.
+
     Raises:
         ValueError: a carrier does not hang together.
     """
     parts = {item.coupling: item for item in sizing.couplers}
-    hubs = {place.mass: (place.x, place.y) for place in placement.masses}
+    hubs = {place.mass: place for place in placement.masses}
     ends = {
         end.ref: (rung, end.x)
         for rung in layout.rungs
         for end in (rung.left, rung.right)
         if end.kind is EndKind.COUPLER
     }
-    tilts = _tilts(network, ends, sizing, process)
+    tilts = _tilts(network, hubs, ends, sizing, process)
     found = []
     built: dict[str, _Carrier] = {}
     for coupling in network.couplings:
@@ -118,22 +123,58 @@ def carrier_stiffnesses(
 
 
 def _tilts(
-    network: Network, ends: Mapping[str, tuple[Rung, float]], sizing: Sizing, process: Process
+    network: Network,
+    hubs: Mapping[str, PlacedMass],
+    ends: Mapping[str, tuple[Rung, float]],
+    sizing: Sizing,
+    process: Process,
 ) -> dict[str, float]:
     """Angle of every source's shuttle: the couplers' largest forces times their heights, over its stiffness."""
-    unit = process.plates(PlateRole.UNIT)[0]
-    parts = {item.coupling: item for item in sizing.couplers}
-    throws = {item.mass: item.amplitude for item in sizing.units}
+    turns = _turns(network, sizing)
     tilts: dict[str, float] = {}
     for coupling in network.couplings:
         if coupling.name not in ends:
             continue
-        plate = process.plate(ends[coupling.name][0].plate)
-        height = process.z_of(plate.name) + plate.thickness / 2.0 - process.z_of(unit.name) - unit.thickness / 2.0
-        leaf = parts[coupling.name].leaf
-        force = leaf.own * throws[coupling.source] + leaf.coupling * throws[coupling.target]
-        tilts[coupling.source] = tilts.get(coupling.source, 0.0) + force * height / sizing.law.shuttle_tilt
+        height = _height(process, _unit_plate(process, hubs[coupling.source]), ends[coupling.name][0].plate)
+        tilts[coupling.source] = tilts.get(coupling.source, 0.0) + turns[coupling.name] * height
     return tilts
+
+
+def leans(network: Network, sizing: Sizing, process: Process) -> dict[str, Lean]:
+    """What share of its limit every coupling takes of its source's tilt, with its leaf on a rung plate in the middle.
+
+    Args:
+        process: with the plates of both decks.
+    """
+    unit, rungs = process.plates(PlateRole.UNIT)[0], process.plates(PlateRole.RUNG)
+    middle = rungs[(len(rungs) // 2 - 1) // 2].name
+    own, across = (_height(process, unit, plate_in(deck, middle)) for deck in (Deck.LOWER, Deck.UPPER))
+    most = tilt_limit(sizing, process)
+    return {name: Lean(turn * own / most, turn * across / most) for name, turn in _turns(network, sizing).items()}
+
+
+def _turns(network: Network, sizing: Sizing) -> dict[str, float]:
+    """By coupling, rad for each mm that its leaf is from its source's unit: its largest force over that stiffness."""
+    parts = {item.coupling: item for item in sizing.couplers}
+    throws = {item.mass: item.amplitude for item in sizing.units}
+    turns = {}
+    for coupling in network.couplings:
+        if coupling.name in parts:
+            leaf = parts[coupling.name].leaf
+            force = leaf.own * throws[coupling.source] + leaf.coupling * throws[coupling.target]
+            turns[coupling.name] = force / sizing.law.shuttle_tilt
+    return turns
+
+
+def _height(process: Process, unit: Plate, plate: str) -> float:
+    """Distance in z, mm, of the middle of ``plate`` from that of a unit plate."""
+    middles = [process.z_of(item.name) + item.thickness / 2.0 for item in (process.plate(plate), unit)]
+    return abs(middles[0] - middles[1])
+
+
+def _unit_plate(process: Process, hub: PlacedMass) -> Plate:
+    deck = Deck.UPPER if hub.deck is Deck.UPPER else Deck.LOWER
+    return process.plate(plate_in(deck, process.plates(PlateRole.UNIT)[0].name))
 
 
 class _Carrier:
@@ -142,18 +183,18 @@ class _Carrier:
     def __init__(
         self,
         net: str,
-        hub: tuple[float, float],
+        place: PlacedMass,
         rungs: Sequence[Rung],
         trunks: Sequence[Trunk],
         sizing: Sizing,
         process: Process,
     ) -> None:
-        self.net, self.hub, self.process, self.rules = net, hub, process, sizing.rules
-        self.nodes: list[tuple[float, float]] = [hub]
+        self.net, self.hub, self.process, self.rules = net, (place.x, place.y), process, sizing.rules
+        self.nodes: list[tuple[float, float]] = [self.hub]
         self.places: dict[tuple[float, float, str], int] = {}
         self.beams: list[Beam] = []
         self.ties: list[Tie] = []
-        self.unit, self.trunk = process.plates(PlateRole.UNIT)[0], process.plates(PlateRole.TRUNK)[0]
+        self.unit, self.trunk = _unit_plate(process, place), process.plates(PlateRole.TRUNK)[0]
         for rung in rungs:
             sheet, width = _sheet(process, process.plate(rung.plate)), rung_width(rung, sizing.rules)
             low = self._end(rung.left.x, rung, rung.left.kind, 1.0, sheet, width)
@@ -164,7 +205,8 @@ class _Carrier:
             heights = sorted(
                 {r.y for r in rungs for e in (r.left, r.right) if e.kind is EndKind.VIA and e.ref == trunk.name}
             )
-            stops = [self._node(trunk.x, y, self.trunk.name) for y in heights]
+            plate = self._trunk_plate(Deck.UPPER if trunk.deck is Deck.UPPER else Deck.LOWER)
+            stops = [self._node(trunk.x, y, plate.name) for y in heights]
             self.beams += [sheet.beam(a, b, sizing.rules.bar_width) for a, b in pairwise(stops)]
         self.frame = Frame(
             self.nodes, self.beams, [Spring(dof(0, TURN), turn_stiffness(sizing.law, sizing.series))], self.ties
@@ -179,6 +221,9 @@ class _Carrier:
         except np.linalg.LinAlgError as error:
             raise ValueError(f"the carrier of {self.net} does not hang together") from error
         return float(1.0 / (moved[dof(node, Y)] + arm * moved[dof(node, TURN)]))
+
+    def _trunk_plate(self, deck: Deck) -> Plate:
+        return self.process.plate(plate_in(deck, self.trunk.name))
 
     def _node(self, x: float, y: float, plate: str) -> int:
         key = (round(x, 4), round(y, 4), plate)
@@ -196,7 +241,8 @@ class _Carrier:
         Between them it is a cantilever, 3 E I / L^3, and a twisted bar, G J / L with J = 0.1406 side^4 (Saint-Venant,
         square section; Young's tables) and G = E / 2.6.
         """
-        length = self.process.z_of(above) - self.process.z_of(below.name) - below.thickness
+        low_plate, high_plate = sorted((below, self.process.plate(above)), key=lambda p: self.process.z_of(p.name))
+        length = self.process.z_of(high_plate.name) - self.process.z_of(low_plate.name) - low_plate.thickness
         modulus, side = self.process.materials[self.process.stack.pin_material].modulus, self.rules.pin
         bend = 3.0 * modulus * side**4 / 12.0 / length**3
         twist = modulus / 2.6 * 0.1406 * side**4 / length
@@ -210,7 +256,8 @@ class _Carrier:
             known = key in self.places
             node = self._node(x, rung.y, rung.plate)
             if not known:
-                self._pin(self.trunk, rung.plate, self._node(x, rung.y, self.trunk.name), node)
+                trunk = self._trunk_plate(deck_of_plate(rung.plate))
+                self._pin(trunk, rung.plate, self._node(x, rung.y, trunk.name), node)
             return node
         if kind is not EndKind.HUB:
             return self._node(x, rung.y, rung.plate)

@@ -17,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from mdlcad.placement.problem import BETWEEN, Floats, Ints, Problem
-from mdlcad.placement.state import DEEP, State
+from mdlcad.placement.state import COLUMN, DEEP, State
 
 HARD = 12.0
 """Cost of one violated hard rule; a wire of one row costs WIRE."""
@@ -358,12 +358,15 @@ def _passes(p: Problem, s: State, wire: float) -> float:
 
 
 @numba.njit(cache=True, error_model="numpy", forceinline=True)
-def _away(s: State, a: int, b: int) -> float:
-    """What masses a and b (or -1) pay for not being in their home slots."""
+def _away(p: Problem, s: State, a: int, b: int) -> float:
+    """What masses a and b (or -1) pay for not being in their home slots or columns."""
     away = 0
     for k in range(2):
         mass = a if k == 0 else b
-        if mass >= 0 and s.home[mass, SLOT] >= 0 and s.mass[mass, SLOT] != s.home[mass, SLOT]:
+        if mass < 0:
+            continue
+        home, slot = s.home[mass, SLOT], s.mass[mass, SLOT]
+        if (home >= 0 and slot != home) or (home <= COLUMN and p.slot[slot, 0] != COLUMN - home):
             away += 1
     return float(s.price[0]) * away
 
@@ -473,9 +476,9 @@ def anneal(
             n = _gather(p, mass, nets, 0)
             if other >= 0:
                 n = _gather(p, other, nets, n)
-            reach = -_span(p, s, nets, n) - _passes(p, s, WIRE) - _away(s, mass, other)
+            reach = -_span(p, s, nets, n) - _passes(p, s, WIRE) - _away(p, s, mass, other)
             _swap(s, mass, slot)
-            reach += _span(p, s, nets, n) + _passes(p, s, WIRE) + _away(s, mass, other)
+            reach += _span(p, s, nets, n) + _passes(p, s, WIRE) + _away(p, s, mass, other)
             _swap(s, mass, old)
             if reach > 0 and _draw(random) >= math.exp(-reach / heat):
                 continue

@@ -4,16 +4,25 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from msgspec import UNSET, UnsetType
+
+from mdlcad.mechanics.decks import Deck
+
 
 @dataclass(frozen=True, slots=True)
 class PlacedMass:
-    """A mass in its slot; (x, y) is the centre of its hub in mm."""
+    """A mass in its slot; (x, y) is the centre of its hub in mm.
+
+    Attributes:
+        deck: where its unit is; left out of the file of a device with one unit plate.
+    """
 
     mass: str
     column: int
     row: int
     x: float
     y: float
+    deck: Deck | UnsetType = UNSET
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,6 +14,8 @@ DEEP = 16
 MANY, BAND = 100, 24
 """With more masses than MANY, at most BAND rows of trunks are packed together, so that a move costs no more in a large
 device; a trunk in more bands takes the packing's cost in each. What is legal in every band need not be so in all."""
+COLUMN = -2
+"""A home of ``COLUMN - c`` is any slot of column c."""
 
 
 class State(NamedTuple):
@@ -29,7 +31,8 @@ class State(NamedTuple):
         dirty: bands whose trunks have changed.
         seat: by net-channel, its place in the band that is being packed. at, due, waits, last, orders: room for
             packing tracks; an order is (first, second, order before it with the same first or -1).
-        home: (max(M, J), 3) by mass the slot and bias side, by coupling the channel side that it should keep, or -1.
+        home: (max(M, J), 3) by mass the slot (or column, see ``COLUMN``) and bias side, by coupling the channel side
+            that it should keep, or -1.
         price: what it costs a mass to leave its home slot, and a leaf or coupling its home side.
     """
 

@@ -58,6 +58,8 @@ class ChannelModel:
             if item.ceiling is not None:
                 for literal in row[item.ceiling + 1 :]:
                     self.model.add(literal == 0)
+            for literal in row[: item.floor or 0]:
+                self.model.add(literal == 0)
         self.known: dict[tuple[str, str], Any] = {}
         self.edges = [self._edges(item) for item in channel.items]
         self._trunks()
@@ -173,7 +175,9 @@ class ChannelModel:
                 terms.append((2 if item.role is Role.COUPLER else 1) * (right - left))
         for item, row in zip(self.channel.items, self.plate, strict=True):
             if item.role in (Role.COUPLER, Role.STRAIGHT, Role.SOURCE):
-                terms += [LEVEL * k * literal for k, literal in enumerate(row)]
+                # the nearer to its unit the better: of a bare hub's net that is the other deck's
+                nearest = row if item.floor is None else row[::-1]
+                terms += [LEVEL * k * literal for k, literal in enumerate(nearest)]
         return sum(terms)
 
 

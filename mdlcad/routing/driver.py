@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TypeVar
 
 from shapely import Polygon
 
@@ -61,19 +62,25 @@ class Size:
         short, long = sorted((max(xs) - min(xs), max(ys) - min(ys)))
         return min(min(self.fit) / short, max(self.fit) / long)
 
+    def words(self) -> str:
+        """The limit in words, to follow that something could not be placed; nothing if there is none."""
+        if self.pitch is not None:
+            return f"at {self.pitch:g} mm per grid unit"
+        return "" if self.fit is None else f"within {self.fit[0]:g} x {self.fit[1]:g} mm"
+
 
 SMALLEST = Size()
 
 
 @dataclass(frozen=True, slots=True)
-class _Effort:
+class Effort:
     """How many of a scale's lattices are annealed in full, and with how many seeds each."""
 
     lattices: int
     seeds: int
 
 
-QUICK, PATIENT = _Effort(2, 2), _Effort(2, 3)
+QUICK, PATIENT = Effort(2, 2), Effort(2, 3)
 
 
 def place_and_route(
@@ -102,24 +109,38 @@ def place_and_route(
             what was in the way, and has a picture of that.
     """
     search = _Search(network, boundary, ports, rules, seed, progress or (lambda line: None), judge, placer)
+    least = least_scale(network, boundary, rules)
+    found = smallest(search.attempt, least, boundary, size, lambda: search.judged >= TOO_SOFT)
+    return found if found is not None else search.give_up(size.words())
+
+
+T = TypeVar("T")
+
+
+def smallest(
+    attempt: Callable[[float, Effort], T | None],
+    least: float,
+    boundary: tuple[tuple[int, int], ...],
+    size: Size,
+    hopeless: Callable[[], bool],
+) -> T | None:
+    """What ``attempt`` makes at the smallest scale that works, from ``least`` on; None if none does or ``hopeless``."""
     if size.pitch is not None:
-        found = search.attempt(size.pitch, PATIENT)
-        return found if found is not None else search.give_up(f"at {size.pitch:g} mm per grid unit")
-    scale, most = least_scale(network, boundary, rules), size.most(boundary)
+        return attempt(size.pitch, PATIENT)
+    scale, most = least, size.most(boundary)
     for _ in range(MOST_STEPS):
         last = scale >= most
-        found = search.attempt(min(scale, most), PATIENT if last else QUICK)
+        found = attempt(min(scale, most), PATIENT if last else QUICK)
         if found is not None:
             for finer in _between(min(scale, most), boundary):
-                better = search.attempt(finer, PATIENT)
+                better = attempt(finer, PATIENT)
                 if better is not None:
                     return better
             return found
-        if last or search.judged >= TOO_SOFT:
+        if last or hopeless():
             break
         scale *= STEP
-    words = "" if size.fit is None else f"within {size.fit[0]:g} x {size.fit[1]:g} mm"
-    return search.give_up(words)
+    return None
 
 
 def _between(scale: float, boundary: tuple[tuple[int, int], ...]) -> list[float]:
@@ -173,7 +194,7 @@ class _Search:
         self.judged = 0
         self.empty = Placement((), 0.0, (), (), (), (), (), seed)
 
-    def attempt(self, scale: float, effort: _Effort) -> tuple[Placement, Layout] | None:
+    def attempt(self, scale: float, effort: Effort) -> tuple[Placement, Layout] | None:
         """A placement and its layout at ``scale``, or None."""
         scale = math.floor(scale * 1e4 + 1e-6) / 1e4
         placed = place_ports(self.network, self.ports, scale)

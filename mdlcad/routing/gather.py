@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from mdlcad.mechanics.decks import Deck, deck_of_plate
 from mdlcad.mechanics.rules import LayoutRules
 from mdlcad.network.model import Network
 from mdlcad.placement.grid import RESOLUTION, TabTerminal, free_intervals, holding, way
@@ -139,8 +140,24 @@ def _hung(
     at, bar = round(hub.x / RESOLUTION), units(rules.bar_width / 2)
     left, right = (Edge(at), Edge(bar, trunk)) if side == 1 else (Edge(-bar, trunk), Edge(at))
     return Item(
-        role, source.mass, ref, ((hub.mass, side),), hub.y - half, hub.y + half, left, right, trunk=trunk, post=post
+        role,
+        source.mass,
+        ref,
+        ((hub.mass, side),),
+        hub.y - half,
+        hub.y + half,
+        left,
+        right,
+        trunk=trunk,
+        post=post,
+        floor=_floor(source, rules),
     )
+
+
+def _floor(source: PlacedMass, rules: LayoutRules) -> int | None:
+    """``Item.floor`` of what belongs to the net of ``source``."""
+    bare = isinstance(source.deck, Deck) and source.deck is not deck_of_plate(rules.link_plates[0])
+    return 0 if bare else None
 
 
 def _straight(
@@ -172,6 +189,7 @@ def _straight(
             Edge(round(low / RESOLUTION)),
             Edge(round(high / RESOLUTION)),
             post=post,
+            floor=_floor(source, rules),
         )
     )
 

@@ -33,15 +33,15 @@ def no_objection(placement: Placement, layout: Layout) -> tuple[Objection, ...]:
 
 
 def lowered(
-    work: tuple[Channel, ...], plates: list[tuple[int, ...]], objections: tuple[Objection, ...]
+    work: tuple[Channel, ...], plates: list[tuple[int, ...]], objections: tuple[Objection, ...], top: int
 ) -> set[int] | None:
     """Set ceilings for the items that were objected to; the channels to route again, or None if nothing can go lower.
 
     Of every net, the highest item among the couplings named goes one plate down; when all lie lowest, the rung to its
-    own hub does.
+    own hub does. A net whose unit is in the other deck has its items moved up instead, towards that.
 
     Args:
-        plates: the plate that every item of every channel lies on, in the order of ``work``.
+        plates: the plate that every item of every channel lies on, in the order of ``work``. top: the highest.
     """
     named: dict[str, set[str]] = {}
     for objection in objections:
@@ -49,17 +49,20 @@ def lowered(
     again: set[int] = set()
     for net in sorted(named):
         places = [
-            (item, level, channel.index, position)
+            (item, level if item.floor is None else top - level, channel.index, position)
             for channel, levels in zip(work, plates, strict=True)
             for position, (item, level) in enumerate(zip(channel.items, levels, strict=True))
-            if item.net == net and level > 0
+            if item.net == net and level != (0 if item.floor is None else top)
         ]
         ends = [place for place in places if place[0].ref in named[net] and _carries(place[0])]
         own = [place for place in places if place[0].role is Role.SOURCE]
         for choice in (ends, own):
             if choice:
                 item, level, index, position = max(choice, key=lambda place: (place[1], place[0].ref))
-                work[index].items[position] = replace(item, ceiling=level - 1)
+                nearer = (
+                    replace(item, ceiling=level - 1) if item.floor is None else replace(item, floor=top - level + 1)
+                )
+                work[index].items[position] = nearer
                 again.add(index)
                 break
         else:

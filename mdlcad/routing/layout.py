@@ -10,6 +10,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 
+from msgspec import UNSET, UnsetType
+
+from mdlcad.mechanics.decks import Deck
+
 
 class Side(StrEnum):
     """Side of a hub. The left side of a hub looks at lower x."""
@@ -62,13 +66,18 @@ class Rung:
 
 @dataclass(frozen=True, slots=True)
 class Trunk:
-    """A vertical bar of a carrier on plate V, from y_low to y_high (centres of its extreme rungs)."""
+    """A vertical bar of a carrier on plate V, from y_low to y_high (centres of its extreme rungs).
+
+    Attributes:
+        deck: whose plate V; left out of the file of a device with one unit plate.
+    """
 
     name: str
     net: str
     x: float
     y_low: float
     y_high: float
+    deck: Deck | UnsetType = UNSET
 
 
 @dataclass(frozen=True, slots=True)

@@ -63,6 +63,7 @@ class Item:
         post: where its fixed post stands (counts), or None.
         plate: index of the plate it must lie on (a tab that passes hub columns lies on one in several channels).
         ceiling: index of the highest plate it may lie on, or None: higher, its pins would be too soft or tilt its hub.
+        floor: of a net whose unit is in the other deck, above all of these plates: index of the lowest it may lie on.
         rises: (x_low, x_high, y_low, y_high) of a second rectangle on the same plate: a tab's vertical part.
     """
 
@@ -79,6 +80,7 @@ class Item:
     bend: int | None = None
     plate: int | None = None
     ceiling: int | None = None
+    floor: int | None = None
     rises: tuple[int, int, float, float] | None = None
 
 

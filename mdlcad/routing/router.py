@@ -82,7 +82,8 @@ def route(
                 if not objections:
                     return layout
                 jam = _objected(objections[0], placement, work)
-                lower = lowered(work, [found.plates for found in found_routes], objections)
+                levels = [found.plates for found in found_routes]
+                lower = lowered(work, levels, objections, len(rules.link_plates) - 1)
                 if lower is not None:
                     again = lower
                     continue
