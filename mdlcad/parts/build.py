@@ -2,24 +2,30 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from msgspec import UNSET
 from shapely import Polygon
 
+from mdlcad.mechanics.decks import Deck
 from mdlcad.mechanics.process import Process
 from mdlcad.mechanics.sizing import Sizing
 from mdlcad.network.model import Network
 from mdlcad.parts.bias import bias_bodies
 from mdlcad.parts.body import Body, BodyKind
 from mdlcad.parts.carrier import joined_rungs, rung_body, tab_body, tab_notch, trunk_body
-from mdlcad.parts.clock import clock_pin, clock_plates, handle_notch, handle_place
+from mdlcad.parts.clock import Handle, clock_pin, clock_plates, handle_notch, handle_place
 from mdlcad.parts.coupler import coupler_body
 from mdlcad.parts.frame import frame_bodies, rib_posts, ribs
 from mdlcad.parts.pins import hub_pin, hub_plates, source_of, target_of, via_pins
 from mdlcad.parts.rocker import rocker_bodies
 from mdlcad.parts.screws import screw_bodies
-from mdlcad.parts.stack import Hub, make_stack
+from mdlcad.parts.stack import Hub, Stack, make_stack
 from mdlcad.parts.unit import unit_body
-from mdlcad.parts.windows import windows
+from mdlcad.parts.windows import crossing_slot, windows
 from mdlcad.placement.placement import Placement
+from mdlcad.routing.decks import deck_parts
 from mdlcad.routing.layout import Layout, Side
 
 
@@ -34,6 +40,7 @@ def build_parts(
     """All bodies, bottom to top as far as they lie in plates; pins, posts and shims come with what they belong to.
 
     Args:
+        process: with the plates of both decks, if the placement has two.
         device_boundary: the device's outline in mm; the placement's own if not given.
 
     Raises:
@@ -41,12 +48,90 @@ def build_parts(
         ValueError: the layout contradicts itself or the sizing.
     """
     boundary = Polygon(placement.boundary) if device_boundary is None else device_boundary
-    stack = make_stack(process, sizing, network.dynamics.phases)
+    decks = deck_parts(network, placement, layout, sizing.rules)
+    if decks is None:
+        stack = make_stack(process, sizing, network.dynamics.phases)
+        deck = _deck(stack, network, placement, layout, hub_plates(layout), boundary)
+        screws = screw_bodies(stack, boundary, deck.cuts)
+        openings = windows(stack, network, boundary, deck.hub_pins, [*deck.over, *screws])
+        return deck.bodies(stack, boundary, screws, openings)
+    used = hub_plates(layout)
+    stacks = {deck: make_stack(process, sizing, network.dynamics.phases, deck) for deck in Deck}
+    made = {
+        deck: _deck(stacks[deck], part.network, part.placement, part.layout, used, boundary)
+        for deck, part in decks.items()
+    }
+    screws = screw_bodies(stacks[Deck.LOWER], boundary, [cut for deck in made.values() for cut in deck.cuts])
+    slots = [crossing_slot(stacks[deck], pin) for deck in Deck for pin in made[deck].hub_pins]
+    across = [slot for slot in slots if slot is not None]
+    found = [made[deck].bodies(stacks[deck], boundary, screws, across) for deck in Deck]
+    return (*found[0][: -len(screws)], *found[1])
+
+
+@dataclass(frozen=True, slots=True)
+class _Made:
+    """What is in a deck before its frame is cut around it.
+
+    Attributes:
+        over: carriers, tabs and flexures. cuts: notches in the rims of its plates, by plate in ``notches``.
+    """
+
+    units: tuple[Body, ...]
+    clock_pins: tuple[Body, ...]
+    hub_pins: tuple[Body, ...]
+    links: tuple[Body, ...]
+    via_pins: tuple[Body, ...]
+    tabs: tuple[Body, ...]
+    flexures: tuple[Body, ...]
+    ribs: tuple[Polygon, ...]
+    posts: tuple[Body, ...]
+    handle: Handle
+    notches: dict[str, list[Polygon]]
+
+    @property
+    def over(self) -> tuple[Body, ...]:
+        return (*self.links, *self.tabs, *self.flexures)
+
+    @property
+    def cuts(self) -> list[Polygon]:
+        return [notch for cuts in self.notches.values() for notch in cuts]
+
+    def bodies(
+        self, stack: Stack, boundary: Polygon, screws: Sequence[Body], openings: Sequence[Polygon]
+    ) -> tuple[Body, ...]:
+        """All bodies of the deck, frame and screws included."""
+        hanging = [body for body in self.flexures if body.kind is BodyKind.POST]
+        return (
+            *frame_bodies(stack, boundary, self.ribs, [*self.posts, *hanging], self.notches, screws, openings),
+            *self.posts,
+            *clock_plates(stack, boundary, self.handle, self.clock_pins, self.posts),
+            *self.clock_pins,
+            *self.units,
+            *self.hub_pins,
+            *self.links,
+            *self.via_pins,
+            *self.tabs,
+            *self.flexures,
+            *screws,
+        )
+
+
+def _deck(
+    stack: Stack,
+    network: Network,
+    placement: Placement,
+    layout: Layout,
+    used: Mapping[tuple[str, Side], list[str]],
+    boundary: Polygon,
+) -> _Made:
+    """A deck's units, carriers and flexures; ``used``: plates that hold a block, of all decks."""
+    sizing = stack.sizing
     hubs = {place.mass: Hub(place) for place in placement.masses}
-    standing = list(hubs.values())
+    here = [place for place in placement.masses if place.deck in (UNSET, stack.deck)]
+    own = {place.mass for place in here}
+    standing = [hubs[place.mass] for place in here]
     couplers = {item.coupling: item for item in sizing.couplers}
     biases = {item.mass: item for item in sizing.biases}
-    used = hub_plates(layout)
 
     links = joined_rungs([rung_body(stack, hubs, rung) for rung in layout.rungs])
     links += [trunk_body(stack, trunk, layout.rungs) for trunk in layout.trunks]
@@ -62,31 +147,27 @@ def build_parts(
     for bias in layout.biases:
         flexures += bias_bodies(stack, hubs[bias.mass], bias, biases[bias.mass])
 
+    sizes = [unit for unit in sizing.units if unit.mass in own]
     units = [
-        unit_body(stack, hubs[unit.mass], unit, [side for side in Side if (unit.mass, side) in used])
-        for unit in sizing.units
+        unit_body(stack, hubs[unit.mass], unit, [side for side in Side if (unit.mass, side) in used]) for unit in sizes
     ]
-    clock_pins = [clock_pin(stack, hubs[unit.mass], unit) for unit in sizing.units]
-    hub_pins = [hub_pin(stack, hubs[mass], side, plates) for (mass, side), plates in sorted(used.items())]
     found = ribs(stack, standing, boundary)
-    posts = rib_posts(stack, standing, found, boundary)
     handle = handle_place(stack, boundary)
     notches: dict[str, list[Polygon]] = {plate: [handle_notch(stack, handle)] for plate in stack.clock_plates}
     for tab in layout.tabs:
         notches.setdefault(tab.plate, []).extend(tab_notch(stack, tab))
-    hanging = [body for body in flexures if body.kind is BodyKind.POST]
-    screws = screw_bodies(stack, boundary, [notch for cuts in notches.values() for notch in cuts])
-    openings = windows(stack, network, boundary, hub_pins, [*links, *tabs, *flexures, *screws])
-    return (
-        *frame_bodies(stack, boundary, found, [*posts, *hanging], notches, screws, openings),
-        *posts,
-        *clock_plates(stack, boundary, handle, clock_pins, posts),
-        *clock_pins,
-        *units,
-        *hub_pins,
-        *links,
-        *via_pins(stack, layout),
-        *tabs,
-        *flexures,
-        *screws,
+    return _Made(
+        units=tuple(units),
+        clock_pins=tuple(clock_pin(stack, hubs[unit.mass], unit) for unit in sizes),
+        hub_pins=tuple(
+            hub_pin(stack, hubs[mass], side, plates) for (mass, side), plates in sorted(used.items()) if mass in own
+        ),
+        links=tuple(links),
+        via_pins=tuple(via_pins(stack, layout)),
+        tabs=tuple(tabs),
+        flexures=tuple(flexures),
+        ribs=tuple(found),
+        posts=tuple(rib_posts(stack, standing, found, boundary)),
+        handle=handle,
+        notches=notches,
     )

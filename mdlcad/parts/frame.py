@@ -9,6 +9,7 @@ import shapely
 from shapely import Polygon
 from shapely.affinity import translate
 
+from mdlcad.mechanics.decks import Deck, deck_of_plate
 from mdlcad.mechanics.process import PlateRole
 from mdlcad.parts import palette
 from mdlcad.parts.body import Body, BodyKind
@@ -70,7 +71,8 @@ def rib_posts(stack: Stack, hubs: Sequence[Hub], found: Sequence[Polygon], bound
                     palette.POST,
                 )
             )
-    return [_renamed(body, f"post.rib.{index}") for index, body in enumerate(bodies)]
+    name = "post.rib" if stack.deck is Deck.LOWER else f"post.rib.{stack.deck}"
+    return [_renamed(body, f"{name}.{index}") for index, body in enumerate(bodies)]
 
 
 def _renamed(body: Body, name: str) -> Body:
@@ -99,8 +101,7 @@ def frame_bodies(
     through = [screw_hole(stack, screw) for screw in screws]
     rim = cut(shapely.difference(boundary, inside), through)
     bodies: list[Body] = []
-    plates = stack.process.stack.plates
-    for plate in plates:
+    for plate in stack.plates:
         z = stack.bottom(plate.name)
         holes = [p.section for p in posts if p.z < z + plate.thickness / 2.0 < p.z + p.thickness]
         if plate.role in (PlateRole.BASE, PlateRole.COVER):
@@ -116,7 +117,9 @@ def frame_bodies(
         colour = palette.SPACER if kind is BodyKind.SPACER else palette.FRAME
         shape = cut(shape, notches.get(plate.name, ()))
         bodies += _pieces(stack, f"{kind.value}.{plate.name}", kind, plate.name, shape, colour)
-    for below, above in pairwise(plates):
+    for below, above in pairwise(stack.process.stack.plates):
+        if deck_of_plate(above.name) is not stack.deck:
+            continue
         z = stack.top(below.name)
         height = round(stack.bottom(above.name) - z, 6)
         for index, piece in enumerate(pieces(rim)):

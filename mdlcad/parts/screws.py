@@ -18,7 +18,7 @@ _STEP_MM = 1.0
 
 
 def screw_bodies(stack: Stack, boundary: Polygon, notches: Sequence[Polygon]) -> list[Body]:
-    """The screws, from the bottom of the base to the top of the cover.
+    """The screws, from the bottom of the stack to its top.
 
     One stands at every corner of the rim's middle line and others between, at most the process's pitch apart; where a
     notch or an edge is in the way, it stands at the nearest free place on the line, within half a pitch.
@@ -39,7 +39,7 @@ def screw_bodies(stack: Stack, boundary: Polygon, notches: Sequence[Polygon]) ->
             taken.append(place)
             x, y = round(place.x, 4), round(place.y, 4)
             name, section = f"screw.{len(bodies)}", disc(x, y, frame.screw / 2.0)
-            ends = (stack.base_plate, stack.cover_plate)
+            ends = (stack.process.stack.plates[0].name, stack.process.stack.plates[-1].name)
             bodies.append(stack.upright(name, BodyKind.SCREW, *ends, section, (0.0, 0.0), FRAME_REF, palette.SCREW))
     return bodies
 

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from shapely import Polygon
 
 from mdlcad.errors import UsageError
-from mdlcad.mechanics.process import PlateRole, Process
+from mdlcad.mechanics.decks import Deck, deck_of_plate, plate_in
+from mdlcad.mechanics.process import Plate, PlateRole, Process
 from mdlcad.mechanics.sizing import Sizing
 from mdlcad.parts.body import Body, BodyKind
 from mdlcad.placement.placement import PlacedMass
@@ -15,39 +16,50 @@ from mdlcad.placement.placement import PlacedMass
 
 @dataclass(frozen=True, slots=True)
 class Stack:
-    """A process with the sizes made for it.
+    """A deck of a process with the sizes made for it.
 
     Attributes:
+        process: with the plates of both decks, if there are two.
         clock_plates: plate name by phase.
     """
 
     process: Process
     sizing: Sizing
     clock_plates: tuple[str, ...]
+    deck: Deck = Deck.LOWER
+
+    @property
+    def plates(self) -> tuple[Plate, ...]:
+        """The deck's plates, bottom to top."""
+        return tuple(plate for plate in self.process.stack.plates if deck_of_plate(plate.name) is self.deck)
+
+    def _only(self, role: PlateRole) -> str:
+        return plate_in(self.deck, self.process.plates(role)[0].name)
 
     @property
     def unit_plate(self) -> str:
         """Name of the unit plate."""
-        return self.process.plates(PlateRole.UNIT)[0].name
+        return self._only(PlateRole.UNIT)
 
     @property
     def trunk_plate(self) -> str:
         """Name of the plate of the trunks."""
-        return self.process.plates(PlateRole.TRUNK)[0].name
+        return self._only(PlateRole.TRUNK)
 
     @property
     def base_plate(self) -> str:
         """Name of the base."""
-        return self.process.plates(PlateRole.BASE)[0].name
+        return self._only(PlateRole.BASE)
 
     @property
     def cover_plate(self) -> str:
         """Name of the cover."""
-        return self.process.plates(PlateRole.COVER)[0].name
+        return self._only(PlateRole.COVER)
 
     def level(self, plate: str) -> int:
-        """Place of a plate in the stack, 0 at the bottom."""
-        return [item.name for item in self.process.stack.plates].index(plate)
+        """Place of a plate in the stack, 0 at the deck's base."""
+        names = [item.name for item in self.process.stack.plates]
+        return (names if self.deck is Deck.LOWER else names[::-1]).index(plate)
 
     def bottom(self, plate: str) -> float:
         """Bottom face of a plate, mm."""
@@ -79,31 +91,33 @@ class Stack:
         self,
         name: str,
         kind: BodyKind,
-        low: str,
-        high: str,
+        near: str,
+        far: str,
         section: Polygon,
         throw: tuple[float, float],
         moves_with: str,
         colour: str,
     ) -> Body:
-        """A pin or post from the bottom face of the plate ``low`` to the top face of ``high``."""
+        """A pin or post through two plates and all between, from outer face to outer face."""
+        low, high = sorted((near, far), key=self.bottom)
         z = self.bottom(low)
         height = round(self.top(high) - z, 6)
         return Body(name, kind, "pins", z, height, section, throw, (moves_with,), colour)
 
 
-def make_stack(process: Process, sizing: Sizing, phases: int) -> Stack:
-    """The stack for a network of that many phases.
+def make_stack(process: Process, sizing: Sizing, phases: int, deck: Deck = Deck.LOWER) -> Stack:
+    """The stack of a deck for a network of that many phases.
 
     Raises:
         UsageError: the process has too few clock plates.
     """
-    plates = [plate.name for plate in reversed(process.plates(PlateRole.CLOCK))]
+    clocks = [plate.name for plate in process.plates(PlateRole.CLOCK) if deck_of_plate(plate.name) is Deck.LOWER]
+    plates = [plate_in(deck, name) for name in reversed(clocks)]
     if len(plates) < phases:
         raise UsageError(
             f"process {process.name}: stack.plates: {phases} clock plates are needed, it has {len(plates)}"
         )
-    return Stack(process, sizing, tuple(plates[:phases]))
+    return Stack(process, sizing, tuple(plates[:phases]), deck)
 
 
 def mass_ref(mass: str) -> str:

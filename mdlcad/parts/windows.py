@@ -64,6 +64,17 @@ def windows(
     return list(found.values())
 
 
+def crossing_slot(stack: Stack, pin: Body) -> Polygon | None:
+    """What a hub pin that goes on into the other deck sweeps in both covers, with the gap; None if it does not."""
+    low, high = sorted((stack.bottom(stack.cover_plate), stack.top(stack.cover_plate)))
+    if not (pin.z < low and high < pin.z + pin.thickness):
+        return None
+    x, y = _centre(pin)
+    rules = stack.sizing.rules
+    half, along = rules.pin / 2.0 + rules.gap, rules.pin / 2.0 + rules.throw + rules.gap
+    return box(x - half, y - along, x + half, y + along)
+
+
 def _centre(body: Body) -> tuple[float, float]:
     centre = body.section.centroid
     return round(centre.x, 4), round(centre.y, 4)

@@ -67,7 +67,8 @@ def _choose(network: Network, most: int, leans: Mapping[str, Lean], seed: int) -
         # in thousandths, since the solver counts
         own = sum(round(1000 * lean.own) for lean, _ in terms)
         model.add(own + sum(round(1000 * (lean.across - lean.own)) * differ for lean, differ in terms) <= 1000)
-    above, below = [], []
+    above: list[cp_model.IntVar] = []
+    below: list[cp_model.IntVar] = []
     for source, cross in crosses.items():
         # a bare hub is in the deck that its unit is not in
         for found, there in ((above, 1 - upper[source]), (below, upper[source])):

@@ -8,7 +8,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from mdlcad.mechanics.decks import Deck, deck_of_plate
+from mdlcad.mechanics.decks import Deck, deck_of_plate, two_decks
+from mdlcad.mechanics.process import Process
 from mdlcad.mechanics.rules import LayoutRules
 from mdlcad.network.model import Network
 from mdlcad.placement.decks import Units, crossing, network_in, rules_in
@@ -36,6 +37,15 @@ def units_of(placement: Placement) -> dict[str, Deck] | None:
     """The deck of every mass; None for a device with one unit plate."""
     units = {unit.mass: unit.deck for unit in placement.masses}
     return {mass: deck for mass, deck in units.items() if isinstance(deck, Deck)} or None
+
+
+def process_of(process: Process, placement: Placement) -> Process:
+    """The process as the device stacks it: with the plates of both decks, if it has two.
+
+    Raises:
+        UsageError: the plates of the process have names that those of a second deck would have.
+    """
+    return process if units_of(placement) is None else two_decks(process)
 
 
 def joined_placement(network: Network, units: Units, parts: Mapping[Deck, Placement]) -> Placement:
