@@ -29,6 +29,12 @@ def register(commands: Commands[argparse.ArgumentParser]) -> None:
     extent = build.add_mutually_exclusive_group()
     extent.add_argument("--pitch", type=length, metavar="MM", help="size of a grid unit (as small as can be routed)")
     extent.add_argument("--fit", type=bed, metavar="WxH", help="largest size of the boundary in mm, either way round")
+    build.add_argument(
+        "--unit-plates",
+        choices=("1", "2", "auto"),
+        default="auto",
+        help="how many; auto: a second one if the device cannot be placed and routed on one (%(default)s)",
+    )
     build.add_argument("--from", dest="first", metavar="STAGE", help="take earlier artefacts from the folder")
     build.add_argument("--to", dest="last", metavar="STAGE", help="stop after this stage")
     build.add_argument("--jobs", type=jobs, default=2, metavar="N", help="processors to use (%(default)s)")
@@ -93,7 +99,7 @@ def _run(options: argparse.Namespace) -> int:
     from mdlcad.flow.kept import Reuse
     from mdlcad.flow.state import Outlines
     from mdlcad.mapping import MappingRequest
-    from mdlcad.routing.driver import Size
+    from mdlcad.routing.driver import Size, UnitPlates
 
     place, broken = build(
         Request(
@@ -113,7 +119,7 @@ def _run(options: argparse.Namespace) -> int:
             first=options.first,
             last=options.last,
             workers=options.jobs,
-            size=Size(options.pitch, options.fit),
+            size=Size(options.pitch, options.fit, UnitPlates(options.unit_plates)),
             outlines=Outlines.KERF if options.kerf else Outlines.AS_DESIGNED,
             reuse=Reuse.FRESH if options.fresh else Reuse.KEEP,
             placer=_placer(options),

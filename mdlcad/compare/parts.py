@@ -16,6 +16,7 @@ from mdlcad.compare.pair import Findings, Pair
 from mdlcad.errors import UsageError
 from mdlcad.mechanics import Process, Sizing
 from mdlcad.mechanics.compensation import COMPENSATION_FILE, Compensation, compensated
+from mdlcad.mechanics.decks import two_decks
 from mdlcad.parts.body import Body
 from mdlcad.parts.bom import bill_of_materials
 from mdlcad.parts.store import Parts
@@ -136,8 +137,8 @@ def _like(a: Polygon, b: Polygon, tolerance: float) -> bool:
 
 def _materials(pair: Pair, a: Sequence[Body], b: Sequence[Body]) -> list[Change]:
     """The bill of materials, line against line."""
-    lines_a = _bill(a, read(pair.a, "process.json", Process))
-    lines_b = _bill(b, read(pair.b, "process.json", Process))
+    lines_a = _bill(a, two_decks(read(pair.a, "process.json", Process)))
+    lines_b = _bill(b, two_decks(read(pair.b, "process.json", Process)))
     changes = keyed_changes(
         "bill of materials", lines_a, lines_b, lambda line: counted(int(line["count"] or 0), "piece")
     )

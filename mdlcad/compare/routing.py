@@ -10,6 +10,7 @@ from math import hypot
 from mdlcad.compare.change import Change, FieldChange, Sort, Spot
 from mdlcad.compare.fields import counted, keyed_changes, largest_first, same_number
 from mdlcad.compare.pair import Findings, Pair
+from mdlcad.mechanics.decks import Deck, plate_in
 from mdlcad.routing.layout import BiasLeaf, CouplerLeaf, Layout, RungEnd
 
 Box = tuple[float, float, float, float]
@@ -87,7 +88,8 @@ def _nets(layout: Layout) -> dict[str, _Net]:
     nets: dict[str, _Net] = {}
     # pieces in an order that their numbering does not decide, so that a re-numbered net is the same net
     for trunk in sorted(layout.trunks, key=lambda item: (item.net, item.x, item.y_low)):
-        piece = _Piece("trunk", "V", (trunk.x, trunk.y_low, trunk.x, trunk.y_high))
+        plate = plate_in(Deck.UPPER if trunk.deck is Deck.UPPER else Deck.LOWER, "V")
+        piece = _Piece("trunk", plate, (trunk.x, trunk.y_low, trunk.x, trunk.y_high))
         nets.setdefault(trunk.net, _Net()).pieces.append(piece)
     for rung in sorted(layout.rungs, key=lambda item: (item.net, item.y, item.left.x)):
         ends = " to ".join(_end_words(item) for item in (rung.left, rung.right))

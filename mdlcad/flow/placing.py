@@ -13,14 +13,16 @@ from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
 
+from msgspec import UNSET, UnsetType
 from shapely import Polygon
 
-from mdlcad.errors import Picture, SignoffError
+from mdlcad.errors import Picture, SignoffError, UsageError
 from mdlcad.flow.earlier import EarlierBuild
 from mdlcad.mechanics import Process, Sizing
+from mdlcad.mechanics.decks import two_decks
 from mdlcad.network.matching import changed_masses, renamed, renamed_masses
 from mdlcad.network.model import Network
-from mdlcad.parts.stiffness import carrier_faults, carrier_stiffnesses
+from mdlcad.parts.stiffness import carrier_faults, carrier_stiffnesses, leans
 from mdlcad.placement.keep_grid import place_on_grid_like
 from mdlcad.placement.lattice import outline_at
 from mdlcad.placement.names import PlacerName
@@ -31,7 +33,9 @@ from mdlcad.placement.unit_grid import GridPlacement, Seating, place_on_grid
 from mdlcad.report.report import Likeness, Search, Seeds
 from mdlcad.routing import place_and_route
 from mdlcad.routing.check import check_layout
-from mdlcad.routing.driver import Size
+from mdlcad.routing.deck_search import place_and_route_decks
+from mdlcad.routing.decks import process_of, units_of
+from mdlcad.routing.driver import Size, UnitPlates
 from mdlcad.routing.judge import Objection
 from mdlcad.routing.layout import Layout
 from mdlcad.routing.like import place_and_route_like
@@ -42,10 +46,11 @@ Key = tuple[float, ...]
 
 @dataclass(frozen=True, slots=True)
 class Placed:
-    """A device with parts, placed and routed."""
+    """A device with parts, placed and routed; ``second_plate``: why on two unit plates."""
 
     placement: Placement
     layout: Layout
+    second_plate: str | UnsetType = UNSET
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,6 +113,7 @@ def best_of(work: Work, first: int, count: int, workers: int, progress: Progress
             str(work.placer.name),
             None if count == 1 else Seeds(tuple(seeds), best.seed, failed),
             None if work.earlier is None else likeness(work, best.result),
+            best.result.second_plate if isinstance(best.result, Placed) else UNSET,
         ),
     )
 
@@ -175,26 +181,50 @@ def _device(work: Work, seed: int, progress: Progress) -> Placed:
     sources = {coupling.name: coupling.source for coupling in network.couplings}
 
     def judge(placement: Placement, layout: Layout) -> tuple[Objection, ...]:
-        stiffnesses = carrier_stiffnesses(network, placement, layout, sizing, process)
+        stiffnesses = carrier_stiffnesses(network, placement, layout, sizing, process_of(process, placement))
         faults = carrier_faults(stiffnesses, sizing, process)
         return tuple(Objection(sources[fault.coupling], fault.coupling, fault.message) for fault in faults)
 
     if work.earlier is not None and work.earlier.device is not None:
         before = work.earlier.device
         if work.earlier.network == network and work.earlier.rules == rules and _same_frame(work, before.placement):
-            return Placed(before.placement, before.layout)
+            decks = UNSET if units_of(before.placement) is None else "as in the build that this is like"
+            return Placed(before.placement, before.layout, decks)
+        if work.size.unit_plates is UnitPlates.TWO or units_of(before.placement) is not None:
+            raise UsageError(
+                "--like: on two unit plates only a program with the same network can be like an earlier build; "
+                "build without --like"
+            )
         found = place_and_route_like(
             network, work.boundary, work.ports, rules, seed, before, progress, judge, work.size
         )
         if found is not None:
             return Placed(*found)
+
+    def on_two(why: str) -> Placed:
+        leaning = leans(network, sizing, two_decks(process))
+        placement, layout = place_and_route_decks(
+            network, work.boundary, work.ports, rules, seed, leaning, progress, judge, work.size
+        )
+        return Placed(placement, layout, why)
+
+    if work.size.unit_plates is UnitPlates.TWO:
+        if work.placer.name is PlacerName.PAPER:
+            raise UsageError("--unit-plates 2: the paper's placer knows one plate only; leave out --placer paper")
+        return on_two("asked for")
     try:
         return Placed(
             *place_and_route(network, work.boundary, work.ports, rules, seed, progress, judge, work.size, work.placer)
         )
     except SignoffError as problem:
         if work.placer.name is not PlacerName.PAPER:
-            raise
+            if work.size.unit_plates is not UnitPlates.AUTO:
+                raise
+            progress(f"one unit plate cannot do it: {problem}")
+            try:
+                return on_two(str(problem))
+            except SignoffError as other:
+                raise SignoffError(f"{problem}; and {other}", other.picture or problem.picture) from None
         words = f"{problem}. The paper's placer sees no channels, so what it places may not route; --placer anneal does"
         raise SignoffError(words, problem.picture) from None
 
@@ -209,6 +239,8 @@ def _same_frame(work: Work, placement: Placement) -> bool:
         if port.bit in places
     )
     wanted = work.size.pitch in (None, scale) and scale <= work.size.most(work.boundary) + 1e-9
+    plates = UnitPlates.ONE if units_of(placement) is None else UnitPlates.TWO
+    wanted = wanted and work.size.unit_plates in (UnitPlates.AUTO, plates)
     return wanted and ports and outline_at(work.boundary, scale) == placement.boundary
 
 

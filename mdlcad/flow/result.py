@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from mdlcad.flow.state import Job, State
+from mdlcad.mechanics import Process
 from mdlcad.parts.body import Body
 from mdlcad.parts.bom import bill_of_materials
 from mdlcad.parts.plates import plates_of
 from mdlcad.parts.tiles import tiles_of
 from mdlcad.report.make import behaviour_of, extent_of, hashes_of, mechanics_of
 from mdlcad.report.report import Lvs, Report, StageRecord, Stopped
+from mdlcad.routing.decks import process_of, units_of
 
 
 def make_report(
@@ -16,6 +18,7 @@ def make_report(
 ) -> Report:
     """The report of what has been made so far in ``job.folder``."""
     network, bodies = state.network, state.bodies
+    process = job.process if state.placement is None else process_of(job.process, state.placement)
     return Report(
         design=state.device.name if state.device else "",
         cells=job.library.name,
@@ -36,8 +39,8 @@ def make_report(
         margins=state.margins,
         extent_mm=extent_of(bodies) if bodies else None,
         plates=tuple(plates_of(bodies)) if bodies else (),
-        tiles=_tiles(bodies, job) if bodies else None,
-        bom=bill_of_materials(bodies, job.process) if bodies else None,
+        tiles=_tiles(bodies, process) if bodies else None,
+        bom=bill_of_materials(bodies, process) if bodies else None,
         stages=records,
         stopped=stopped,
         failures=tuple(failures(state, stopped)),
@@ -45,12 +48,14 @@ def make_report(
         placer=None if state.search is None else state.search.placer,
         seeds=None if state.search is None else state.search.seeds,
         like=None if state.search is None else state.search.like,
+        unit_plates=None if state.placement is None else 1 if units_of(state.placement) is None else 2,
+        second_plate=(state.search.second_plate or None) if state.search is not None else None,
     )
 
 
-def _tiles(bodies: tuple[Body, ...], job: Job) -> int:
+def _tiles(bodies: tuple[Body, ...], process: Process) -> int:
     """How many pieces of work the plates are for the machine's bed."""
-    return sum(len(tiles_of(plate, members, job.process).tiles) for plate, members in plates_of(bodies).items())
+    return sum(len(tiles_of(plate, members, process).tiles) for plate, members in plates_of(bodies).items())
 
 
 def failures(state: State, stopped: Stopped | None) -> list[str]:

@@ -31,6 +31,7 @@ from mdlcad.proof.prove import prove
 from mdlcad.proof.reference import build_reference
 from mdlcad.report.report import Search
 from mdlcad.routing import find_lack
+from mdlcad.routing.decks import process_of
 from mdlcad.routing.drawing import draw_layout
 from mdlcad.routing.layout import Layout
 from mdlcad.signoff.drawn import measure_device
@@ -108,13 +109,18 @@ def _place_and_route(job: Job, state: State, progress: Progress) -> State:
     return replace(state, placement=best.result.placement, layout=best.result.layout, search=best.search)
 
 
+def _stacked(job: Job, state: State) -> Process:
+    """The process with as many decks as the device has."""
+    return process_of(job.process, need(state.placement))
+
+
 def _carriers(state: State, process: Process) -> tuple[CarrierStiffness, ...]:
     network, placement, layout = need(state.network), need(state.placement), need(state.layout)
     return carrier_stiffnesses(network, placement, layout, need(state.sizing), process)
 
 
 def _compensate(job: Job, state: State, progress: Progress) -> State:
-    sizing, carriers = need(state.sizing), _carriers(state, job.process)
+    sizing, carriers = need(state.sizing), _carriers(state, _stacked(job, state))
     try:
         found = compensate(
             need(state.network), job.process, sizing, {item.coupling: item.stiffness for item in carriers}
@@ -140,7 +146,7 @@ def _build_parts(job: Job, state: State, progress: Progress) -> State:
         need(state.layout),
         need(state.sizing),
     )
-    bodies = build_parts(network, placement, layout, sizing, job.process, Polygon(placement.boundary))
+    bodies = build_parts(network, placement, layout, sizing, _stacked(job, state), Polygon(placement.boundary))
     return replace(state, bodies=bodies)
 
 
@@ -152,7 +158,7 @@ def _check_geometry(job: Job, state: State, progress: Progress) -> State:
         need(state.layout),
         need(state.bodies),
         state.carriers,
-        job.process,
+        _stacked(job, state),
     )
     return replace(state, rules=rules)
 
@@ -169,7 +175,7 @@ def _guide(job: Job, state: State, progress: Progress) -> State:
         need(state.network),
         need(state.sizing),
         need(state.placement),
-        job.process,
+        _stacked(job, state),
         need(state.bodies),
         need(state.drive),
     )
@@ -181,7 +187,8 @@ def _export(job: Job, state: State, progress: Progress) -> State:
     from mdlcad.export.files import write_files  # the CAD kernel takes seconds to load; early stages need not wait
 
     name, bodies = need(state.network).design, need(state.bodies)
-    files = write_files(name, bodies, job.process, job.kerf_mm, job.folder, job.workers, progress)
+    process = _stacked(job, state)
+    files = write_files(name, bodies, process, job.kerf_mm, job.folder, job.workers, progress)
     return replace(state, files=files)
 
 
@@ -190,8 +197,9 @@ def _lvs(job: Job, state: State, progress: Progress) -> State:
     found = read_step(job.folder / f"{network.design}.step")
     recovered = recover(found)
     result = compare(recovered, network)
-    drawn = measure_device(found, read_cut(job.folder, job.process), recovered, job.process)
-    built = Built(drawn, network, need(state.sizing), state.carriers, job.process)
+    process = _stacked(job, state)
+    drawn = measure_device(found, read_cut(job.folder, process), recovered, process)
+    built = Built(drawn, network, need(state.sizing), state.carriers, process)
     reference = build_reference(need(state.device))
     extracted = prove(built.network, reference, seed=job.seed, workers=job.workers, built=built.system)
     return replace(state, lvs=result, extracted=extracted, built=built.record())
@@ -268,6 +276,8 @@ def _restore_extraction(job: Job, state: State, files: tuple[str, ...]) -> State
 def how_placed(state: State) -> str:
     """How the placement was found, to follow what it is; nothing if with one seed and like no other."""
     words, search = "", need(state.search)
+    if search.second_plate:
+        words += f" on two unit plates ({search.second_plate})"
     if search.like is not None:
         firm = search.like.kept - search.like.changed
         words += f", {firm - search.like.moved} of {firm} unchanged masses in place"
@@ -410,7 +420,7 @@ STEPS: tuple[Step, ...] = (
     ),
     Step(
         "files",
-        ("network", "bodies"),
+        ("network", "placement", "bodies"),
         ("files",),
         _export,
         lambda s: f"{len(s.files)} files",
@@ -420,7 +430,7 @@ STEPS: tuple[Step, ...] = (
     ),
     Step(
         "extraction",
-        ("device", "network", "sizing", "carriers", "files"),
+        ("device", "network", "sizing", "placement", "carriers", "files"),
         ("lvs", "extracted", "built"),
         _lvs,
         lambda s: (

@@ -32,6 +32,7 @@ from mdlcad.proof.prove import prove
 from mdlcad.proof.reference import build_reference
 from mdlcad.report.guide import GUIDE, guide
 from mdlcad.report.report import Report
+from mdlcad.routing.decks import process_of
 from mdlcad.routing.layout import Layout
 from mdlcad.signoff.drawn import measure_device
 from mdlcad.signoff.extraction import Built, BuiltDevice
@@ -95,6 +96,7 @@ def _verify(folder: Path, report: Report, workers: int, say: Callable[[str], Non
         return broken
     sizing, process = load(folder, "sizing.json", Sizing), load(folder, "process.json", Process)
     placement, layout = load(folder, "placement.json", Placement), load(folder, "layout.json", Layout)
+    process = process_of(process, placement)
     carriers = carrier_stiffnesses(network, placement, layout, sizing, process)
     stiffness = {item.coupling: item.stiffness for item in carriers}
     solved = load(folder, COMPENSATION_FILE, Compensation)

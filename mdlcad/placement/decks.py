@@ -20,7 +20,10 @@ from mdlcad.network.model import Network
 
 LIMIT = 3.0
 """CP-SAT's deterministic time for the choice of decks."""
+LEAST = 3
+"""Each deck has at least one of so many units."""
 TASTE = 100
+"""How much a crossing counts; to each seed, up to a quarter more."""
 FILLED = (0.7, 0.8, 0.9, 1.0)
 """Shares of a deck's slots that units and bare hubs may take: the first at which a choice is found."""
 
@@ -75,6 +78,9 @@ def _choose(network: Network, most: int, leans: Mapping[str, Lean], seed: int) -
             found.append(model.new_bool_var(f"bare.{source}.{len(found)}"))
             model.add(found[-1] >= cross + there - 1)
     count = sum(upper.values())
+    least = max(1, len(upper) // LEAST)
+    model.add(count >= least)
+    model.add(len(upper) - count >= least)
     model.add(count + sum(above) <= most)
     model.add(len(upper) - count + sum(below) <= most)
     # the two decks are alike: fix one mass

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 
+from msgspec import UNSET, UnsetType
+
 from mdlcad.mechanics.drive import DriveLoads
 from mdlcad.parts.bom import Bom
 from mdlcad.signoff.margins import Margins
@@ -121,11 +123,16 @@ class Likeness:
 
 @dataclass(frozen=True, slots=True)
 class Search:
-    """How a placement was found: by which placer, with which seeds (None: one), like which build (None: like none)."""
+    """How a placement was found: by which placer, with which seeds (None: one), like which build (None: like none).
+
+    Attributes:
+        second_plate: why there is a second unit plate; left out where there is one.
+    """
 
     placer: str
     seeds: Seeds | None
     like: Likeness | None
+    second_plate: str | UnsetType = UNSET
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,6 +145,7 @@ class Report:
         stages: those that ended well, in order.
         stopped: None if all stages that were asked for (``--to``) ran.
         failures: what does not hold, in words with numbers; empty if all that was checked holds.
+        unit_plates: how many; second_plate: why there are two.
         margins: largest errors of dimensions at which the device as drawn still proves right.
         files: SHA-256 by path, of every file but report.json itself and report.html, which is made from it.
     """
@@ -171,3 +179,5 @@ class Report:
     placer: str | None = None
     seeds: Seeds | None = None
     like: Likeness | None = None
+    unit_plates: int | None = None
+    second_plate: str | None = None

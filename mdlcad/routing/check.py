@@ -28,6 +28,7 @@ from mdlcad.placement.placement import Placement
 from mdlcad.routing.check_bodies import Solid, rebuild
 from mdlcad.routing.check_motion import check_motion
 from mdlcad.routing.check_nets import check_nets
+from mdlcad.routing.decks import deck_parts
 from mdlcad.routing.layout import Layout
 
 RULES = (
@@ -55,7 +56,18 @@ class Finding:
 
 
 def check_layout(network: Network, placement: Placement, layout: Layout, rules: LayoutRules) -> tuple[Finding, ...]:
-    """Everything that is wrong with ``layout``; empty if it is sound. Sorted, each finding once."""
+    """Everything that is wrong with ``layout``; empty if it is sound. Sorted, each finding once.
+
+    Of a device with two decks each is checked by itself: a net that crosses needs the same slot in both.
+    """
+    decks = deck_parts(network, placement, layout, rules)
+    if decks is None:
+        return _check_deck(network, placement, layout, rules)
+    parts = [_check_deck(deck.network, deck.placement, deck.layout, deck.rules) for deck in decks.values()]
+    return tuple(sorted({finding for part in parts for finding in part}))
+
+
+def _check_deck(network: Network, placement: Placement, layout: Layout, rules: LayoutRules) -> tuple[Finding, ...]:
     found = [Finding(*item) for item in _check_units(network, placement, rules)]
     if {unit.mass for unit in placement.masses} != {mass.name for mass in network.masses}:
         return tuple(sorted(found))  # without its hubs nothing else can be measured

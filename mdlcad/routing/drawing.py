@@ -7,12 +7,15 @@ name and picks out its whole net. Same input, same bytes.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from html import escape
 from itertools import pairwise
 
+from mdlcad.mechanics.decks import Deck, deck_of_plate
 from mdlcad.mechanics.rules import LayoutRules
 from mdlcad.network.model import Network
 from mdlcad.placement.placement import Placement
+from mdlcad.routing.decks import DeckParts, deck_parts
 from mdlcad.routing.key import write_key
 from mdlcad.routing.layout import EndKind, Layout, Rung, RungEnd, Side
 from mdlcad.routing.pen import Pen, number, text_width
@@ -27,7 +30,58 @@ PIXELS_A_MM = 4.0
 
 
 def draw_layout(network: Network, placement: Placement, layout: Layout, rules: LayoutRules) -> bytes:
-    """The drawing, 1 mm a user unit, y up."""
+    """The drawing, 1 mm a user unit, y up; of a device with two decks, of both side by side, the lower on the left."""
+    nets = {mass.name: f"n{index}" for index, mass in enumerate(network.masses)}
+    decks = deck_parts(network, placement, layout, rules)
+    title = f"{network.design}: {len(network.masses)} masses, {len(network.couplings)} couplings, {_size(placement)}"
+    if decks is None:
+        sheets = [_sheet(network, placement, layout, rules, nets, title)]
+    else:
+        sheets = [
+            _sheet(part.network, part.placement, part.layout, part.rules, nets, _deck_title(deck, part, placement))
+            for deck, part in decks.items()
+        ]
+    pen, width = Pen(0.0, 0.0), 0.0
+    for sheet in sheets:
+        if width:
+            pen.open(f'transform="translate({number(width)} 0)"')
+        pen.lines += sheet.lines
+        if width:
+            pen.close()
+        width += sheet.width
+    height = max(sheet.height for sheet in sheets)
+    body = "\n".join(pen.lines)
+    pixels = f'width="{number(width * PIXELS_A_MM)}" height="{number(height * PIXELS_A_MM)}"'
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" class="layout" viewBox="0 0 {number(width)} {number(height)}" '
+        f'{pixels} role="img" font-family="sans-serif">\n<title>{escape(title)}</title>\n'
+        f"<style>{SHEET}{_net_rules(nets)}</style>\n{body}\n</svg>\n"
+    ).encode()
+
+
+@dataclass(frozen=True, slots=True)
+class _Sheet:
+    """The drawing of one deck: its elements, and its size in mm."""
+
+    lines: tuple[str, ...]
+    width: float
+    height: float
+
+
+def _size(placement: Placement) -> str:
+    xs, ys = [x for x, _ in placement.boundary], [y for _, y in placement.boundary]
+    return f"{max(xs) - min(xs):.1f} x {max(ys) - min(ys):.1f} mm"
+
+
+def _deck_title(deck: Deck, part: DeckParts, placement: Placement) -> str:
+    bare = sum(unit.deck is not deck for unit in part.placement.masses)
+    units = len(part.placement.masses) - bare
+    return f"{part.network.design}, {deck} deck: {units} units, {bare} bare hubs, {_size(placement)}"
+
+
+def _sheet(
+    network: Network, placement: Placement, layout: Layout, rules: LayoutRules, nets: dict[str, str], heading: str
+) -> _Sheet:
     xs, ys = [x for x, _ in placement.boundary], [y for _, y in placement.boundary]
     grow = max(1.0, (max(xs) - min(xs)) / ORDINARY)
     aside = (MARGIN + max((text_width(port.bit, PORT_TEXT) for port in placement.ports), default=0.0)) * grow
@@ -35,9 +89,6 @@ def draw_layout(network: Network, placement: Placement, layout: Layout, rules: L
     width = max(xs) - min(xs) + 2 * aside
     foot = min(ys) - (MARGIN + 4.0) * grow
     lanes = Lanes(rules)
-    nets = {mass.name: f"n{index}" for index, mass in enumerate(network.masses)}
-    size = f"{max(xs) - min(xs):.1f} x {max(ys) - min(ys):.1f} mm"
-    heading = f"{network.design}: {len(network.masses)} masses, {len(network.couplings)} couplings, {size}"
     pen = Pen(left, top)
     pen.text(left + 4.0 * grow, top - 8.0 * grow, heading, f'class="lh" font-size="{number(6.5 * grow)}"')
     pen.polygon(placement.boundary, 'class="lb"', "boundary")
@@ -53,13 +104,7 @@ def draw_layout(network: Network, placement: Placement, layout: Layout, rules: L
     pen.open(f'transform="translate(0 {number(top - foot)}) scale({number(grow)})"')
     pen.lines += key.lines
     pen.close()
-    body = "\n".join(pen.lines)
-    pixels = f'width="{number(width * PIXELS_A_MM)}" height="{number(height * PIXELS_A_MM)}"'
-    return (
-        f'<svg xmlns="http://www.w3.org/2000/svg" class="layout" viewBox="0 0 {number(width)} {number(height)}" '
-        f'{pixels} role="img" font-family="sans-serif">\n<title>{escape(heading)}</title>\n'
-        f"<style>{SHEET}{_net_rules(nets)}</style>\n{body}\n</svg>\n"
-    ).encode()
+    return _Sheet(tuple(pen.lines), width, height)
 
 
 def _net_rules(nets: dict[str, str]) -> str:
@@ -80,8 +125,14 @@ def _units(pen: Pen, network: Network, placement: Placement, rules: LayoutRules)
             x, y = placement.column_x[column], placement.row_y[row]
             words = f"free slot, column {column}, row {row}"
             pen.box((x - rules.unit_left, y - half), (x + rules.unit_right, y + half), 'class="lf"', words, 1.0)
+    here = deck_of_plate(rules.link_plates[0])
     for unit in placement.masses:
         mass = masses[unit.mass]
+        if isinstance(unit.deck, Deck) and unit.deck is not here:
+            low, high = (unit.x - rules.unit_left, unit.y - half), (unit.x + rules.unit_right, unit.y + half)
+            pen.box(low, high, 'class="lf"', f"bare hub of {unit.mass}, whose unit is in the {unit.deck} deck", 1.0)
+            pen.text(low[0] + 1.2, high[1] - 3.0, "bare hub", 'class="lp"')
+            continue
         words = f"{unit.mass}: {mass.kind.value}, phase {mass.phase}, column {unit.column}, row {unit.row}"
         low, high = (unit.x - rules.unit_left, unit.y - half), (unit.x + rules.unit_right, unit.y + half)
         pen.box(low, high, f'class="u{mass.phase % 5}"', words, 1.0)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from enum import StrEnum
 from typing import TypeVar
 
 from shapely import Polygon
@@ -42,6 +43,14 @@ FAR = 3 * HARD
 """A full anneal that leaves more than this is not worth another seed."""
 
 
+class UnitPlates(StrEnum):
+    """How many unit plates a device may have; AUTO: a second one where one cannot do it."""
+
+    ONE = "1"
+    TWO = "2"
+    AUTO = "auto"
+
+
 @dataclass(frozen=True, slots=True)
 class Size:
     """How large the device may be.
@@ -49,10 +58,12 @@ class Size:
     Attributes:
         pitch: mm per grid unit, exactly; None for as small as it can be routed.
         fit: largest width and height of the boundary, mm, either way round; None for any.
+        unit_plates: how many there may be.
     """
 
     pitch: float | None = None
     fit: tuple[float, float] | None = None
+    unit_plates: UnitPlates = UnitPlates.AUTO
 
     def most(self, boundary: tuple[tuple[int, int], ...]) -> float:
         """The largest scale, mm per grid unit, that it allows."""

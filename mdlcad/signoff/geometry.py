@@ -9,7 +9,6 @@ from shapely import Polygon
 from mdlcad.errors import SignoffError
 from mdlcad.mechanics import Finding as SizeFinding
 from mdlcad.mechanics import Process, Sizing
-from mdlcad.mechanics.rules import LayoutRules
 from mdlcad.mechanics.strains import check_strain
 from mdlcad.network.model import Network
 from mdlcad.parts.body import Body
@@ -17,9 +16,7 @@ from mdlcad.parts.plates import plates_of
 from mdlcad.parts.stiffness import CarrierStiffness, carrier_faults
 from mdlcad.parts.tiles import tiles_of
 from mdlcad.placement.placement import Placement
-from mdlcad.routing.check import Finding as LayoutFinding
 from mdlcad.routing.check import check_layout
-from mdlcad.routing.decks import deck_parts
 from mdlcad.routing.layout import Layout
 from mdlcad.signoff.drc import RULES, Finding, check_containment, check_cut, check_motion
 from mdlcad.signoff.seams import check_tiles
@@ -56,7 +53,7 @@ def check_geometry(
     where = {mass.mass: (mass.x, mass.y) for mass in placement.masses}
     findings += [
         Finding(item.rule, item.names, item.x, item.y, 0.0, 0.0, item.message)
-        for item in _check_layout(network, placement, layout, rules)
+        for item in check_layout(network, placement, layout, rules)
     ]
     findings += _of_sizing(sizing.findings, where)
     findings += _strains(network, sizing, process, where)
@@ -71,20 +68,6 @@ def check_geometry(
     ran = sorted({*RULES, *CARRIER_RULES, *STRAIN_RULES, *(item.rule for item in findings)})
     counts = {rule: sum(item.rule == rule for item in findings) for rule in ran}
     return DesignRules(counts, tuple(findings), ())
-
-
-def _check_layout(
-    network: Network, placement: Placement, layout: Layout, rules: LayoutRules
-) -> tuple[LayoutFinding, ...]:
-    """The layout's own rules, of a device with two decks on each."""
-    decks = deck_parts(network, placement, layout, rules)
-    if decks is None:
-        return check_layout(network, placement, layout, rules)
-    return tuple(
-        finding
-        for deck in decks.values()
-        for finding in check_layout(deck.network, deck.placement, deck.layout, deck.rules)
-    )
 
 
 def _strains(

@@ -23,6 +23,7 @@ from mdlcad.parts.body import Body
 from mdlcad.parts.stiffness import CarrierStiffness
 from mdlcad.parts.store import Parts, bodies_of
 from mdlcad.placement.placement import Placement
+from mdlcad.routing.decks import process_of
 
 T = TypeVar("T")
 _REPORT = "report.json"
@@ -98,6 +99,7 @@ def read_build(folder: Path, trust: Trust = Trust.BUILT) -> Built:
         bodies = bodies_of(parts.bodies)
     except msgspec.ValidationError as problem:
         raise UsageError(f"{folder / 'parts.json'}: {problem}; build it again") from None
+    process = process_of(process, placement)
     built = Built(report, device, network, placement, sizing, process, bodies, parts.carriers)
     for words in _contradictions(built):
         raise UsageError(f"{folder}/{words}; build it again{_other_version(report)}")
