@@ -12,6 +12,7 @@ from mdlcad.mechanics.decks import Deck
 from mdlcad.mechanics.process import Process
 from mdlcad.mechanics.sizing import Sizing
 from mdlcad.network.model import Network
+from mdlcad.parts.assembly import turned
 from mdlcad.parts.bias import bias_bodies
 from mdlcad.parts.body import Body, BodyKind
 from mdlcad.parts.carrier import joined_rungs, rung_body, tab_body, tab_notch, trunk_body
@@ -51,21 +52,29 @@ def build_parts(
     decks = deck_parts(network, placement, layout, sizing.rules)
     if decks is None:
         stack = make_stack(process, sizing, network.dynamics.phases)
-        deck = _deck(stack, network, placement, layout, hub_plates(layout), boundary)
-        screws = screw_bodies(stack, boundary, deck.cuts)
-        openings = windows(stack, network, boundary, deck.hub_pins, [*deck.over, *screws])
-        return deck.bodies(stack, boundary, screws, openings)
+        only = _deck(stack, network, placement, layout, hub_plates(layout), boundary)
+        screws = screw_bodies(stack, boundary, only.cuts)
+        openings = windows(stack, network, boundary, only.hub_pins, [*only.over, *screws])
+        return only.bodies(stack, boundary, screws, openings, screws)
     used = hub_plates(layout)
     stacks = {deck: make_stack(process, sizing, network.dynamics.phases, deck) for deck in Deck}
     made = {
         deck: _deck(stacks[deck], part.network, part.placement, part.layout, used, boundary)
         for deck, part in decks.items()
     }
-    screws = screw_bodies(stacks[Deck.LOWER], boundary, [cut for deck in made.values() for cut in deck.cuts])
+    screws = screw_bodies(stacks[Deck.LOWER], boundary, [cut for half in made.values() for cut in half.cuts])
     slots = [crossing_slot(stacks[deck], pin) for deck in Deck for pin in made[deck].hub_pins]
     across = [slot for slot in slots if slot is not None]
-    found = [made[deck].bodies(stacks[deck], boundary, screws, across) for deck in Deck]
-    return (*found[0][: -len(screws)], *found[1])
+    top = stacks[Deck.UPPER].top(stacks[Deck.UPPER].base_plate)
+    found: list[Body] = []
+    for deck, part in decks.items():
+        # each deck is started by itself, its cover on top: the upper one is looked at as it lies then
+        pins, over = made[deck].hub_pins, (*made[deck].over, *screws)
+        if deck is Deck.UPPER:
+            pins, over = tuple(turned(body, top) for body in pins), tuple(turned(body, top) for body in over)
+        openings = windows(stacks[Deck.LOWER], part.network, boundary, pins, over, across)
+        found += made[deck].bodies(stacks[deck], boundary, () if found else screws, [*across, *openings], screws)
+    return tuple(found)
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,12 +106,17 @@ class _Made:
         return [notch for cuts in self.notches.values() for notch in cuts]
 
     def bodies(
-        self, stack: Stack, boundary: Polygon, screws: Sequence[Body], openings: Sequence[Polygon]
+        self,
+        stack: Stack,
+        boundary: Polygon,
+        screws: Sequence[Body],
+        openings: Sequence[Polygon],
+        through: Sequence[Body],
     ) -> tuple[Body, ...]:
-        """All bodies of the deck, frame and screws included."""
+        """All bodies of the deck, frame and ``screws`` included; ``through``: the screws that it has holes for."""
         hanging = [body for body in self.flexures if body.kind is BodyKind.POST]
         return (
-            *frame_bodies(stack, boundary, self.ribs, [*self.posts, *hanging], self.notches, screws, openings),
+            *frame_bodies(stack, boundary, self.ribs, [*self.posts, *hanging], self.notches, through, openings),
             *self.posts,
             *clock_plates(stack, boundary, self.handle, self.clock_pins, self.posts),
             *self.clock_pins,

@@ -29,12 +29,18 @@ def with_tab(network: Network) -> dict[str, str]:
 
 
 def windows(
-    stack: Stack, network: Network, boundary: Polygon, pins: Sequence[Body], bodies: Sequence[Body]
+    stack: Stack,
+    network: Network,
+    boundary: Polygon,
+    pins: Sequence[Body],
+    bodies: Sequence[Body],
+    slots: Sequence[Polygon] = (),
 ) -> list[Polygon]:
     """The windows of all units that need one and can have one.
 
     Args:
         pins: hub pins. bodies: carriers, flexures, posts and screws, whatever may be over a pin or through the cover.
+        slots: of pins that go through the cover; whose pin does needs no window.
     """
     rules, wall = stack.sizing.rules, stack.process.pin.wall
     wanted, tabs = held_at_start(network), with_tab(network)
@@ -47,6 +53,8 @@ def windows(
         if mass not in wanted or mass in tabs or mass in found:
             continue
         x, y = _centre(pin)
+        if any(shapely.contains(slot, pin.section) for slot in slots):
+            continue
         half, high = rules.pin / 2.0 + rules.gap, rules.pin / 2.0 + rules.throw + rules.gap
         window = box(x - half, y - high, x + half, y + high)
         # what lies over the pin may come nearer by its own throw
@@ -56,7 +64,8 @@ def windows(
             if body.z >= pin.z + pin.thickness - 1e-6 and body.kind not in (BodyKind.POST, BodyKind.SCREW)
         ]
         reach = box(x - half, y - high - rules.throw, x + half, y + high + rules.throw)
-        near = [*through, *(other.buffer(wall, join_style="mitre") for other in found.values()), edge]
+        taken = [*slots, *found.values()]
+        near = [*through, *(other.buffer(wall, join_style="mitre") for other in taken), edge]
         if not any(shapely.intersects(reach, shape) for shape in over) and not any(
             shapely.intersects(window, shape) for shape in near
         ):

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import shapely
 from markupsafe import Markup
 from shapely import Polygon
+from shapely.affinity import scale
 
 from mdlcad.mechanics import Process, Sizing
+from mdlcad.mechanics.decks import Deck
 from mdlcad.mechanics.drive import DriveLoads
 from mdlcad.network.model import Network
-from mdlcad.parts.assembly import AssemblyStep, StepKind, assembly_of
+from mdlcad.parts.assembly import AssemblyStep, StepKind, assembly_of, decks_of, turned
 from mdlcad.parts.body import Body, BodyKind
 from mdlcad.parts.bom import bill_of_materials
 from mdlcad.parts.plates import STOCK, plates_of
@@ -95,7 +97,8 @@ def guide(
         plates=[_plate_files(plate, members, process) for plate, members in plates_of(bodies).items()],
         stock=stock_words(bom),
         fits=fits,
-        steps=[_page(number, steps, sizing, process, boundary) for number in range(1, len(steps) + 1)],
+        steps=_pages(steps, sizing, process, boundary),
+        decks=2 if any(step.kind is StepKind.JOIN for step in steps) else 1,
         settings=settings,
         start=Markup(drawing),
         phases=phases,
@@ -130,11 +133,47 @@ def _plate_files(plate: str, members: Sequence[Body], process: Process) -> Plate
     return PlateFiles(plate, about, f"plates/{plate}")
 
 
+def _pages(steps: Sequence[AssemblyStep], sizing: Sizing, process: Process, boundary: Polygon) -> list[StepPage]:
+    """The steps as they lie on the bench: the upper deck of two is put together upside down."""
+    if all(step.deck is Deck.LOWER for step in steps):
+        return [_page(number, steps, sizing, process, boundary) for number in range(1, len(steps) + 1)]
+    top = max(body.z + body.thickness for step in steps for body in step.bodies)
+    middle = (boundary.bounds[0] + boundary.bounds[2]) / 2.0
+    laid = [
+        replace(step, bodies=tuple(_turned_over(body, top, middle) for body in step.bodies))
+        if step.deck is Deck.UPPER
+        else step
+        for step in steps
+    ]
+    over = scale(boundary, -1.0, 1.0, origin=(middle, 0.0))
+    return [
+        _page(number, laid, sizing, process, over if step.deck is Deck.UPPER else boundary)
+        for number, step in enumerate(laid, start=1)
+    ]
+
+
+def _turned_over(body: Body, top: float, middle: float) -> Body:
+    """The body after the stack of height ``top`` is turned over, left to right about x = ``middle``."""
+
+    def mirrored(shape: Polygon | None) -> Polygon | None:
+        return None if shape is None else scale(shape, -1.0, 1.0, origin=(middle, 0.0))
+
+    return replace(
+        turned(body, top),
+        section=scale(body.section, -1.0, 1.0, origin=(middle, 0.0)),
+        assembled=mirrored(body.assembled),
+        envelope=mirrored(body.envelope),
+    )
+
+
 def _page(number: int, steps: Sequence[AssemblyStep], sizing: Sizing, process: Process, boundary: Polygon) -> StepPage:
     step = steps[number - 1]
-    before = _seen(step, [body for earlier in steps[: number - 1] for body in earlier.bodies])
+    mine = [earlier for earlier in steps[: number - 1] if earlier.deck is step.deck]
+    before = _seen(step, [body for earlier in mine for body in earlier.bodies])
     marks, pieces = _pieces(step, sizing)
     title = TITLES[step.kind].format(plate=step.plate)
+    if any(other.deck is Deck.UPPER for other in steps) and step.kind not in (StepKind.JOIN, StepKind.SCREWS):
+        title += f", {step.deck} deck"
     counts: dict[tuple[str, float], int] = {}
     for body in step.bodies:
         if body.kind in STOCK:
@@ -163,7 +202,8 @@ def _pieces(step: AssemblyStep, sizing: Sizing) -> tuple[list[Mark], tuple[Piece
     if step.kind is StepKind.UNITS:
         preloads = {f"unit.{unit.mass}": unit.preload for unit in sizing.units}
         found = [[body] for body in step.bodies if body.kind is BodyKind.UNIT]
-        notes = [_direction(preloads[group[0].name]) for group in found]
+        sign = 1.0 if step.deck is Deck.LOWER else -1.0
+        notes = [_direction(sign * preloads[group[0].name]) for group in found]
     elif step.kind in (StepKind.TRUNKS, StepKind.RUNGS):
         loose = [body for body in step.bodies if body.kind not in (*STOCK, BodyKind.FRAME, BodyKind.SPACER)]
         found = _touching(loose)
@@ -224,7 +264,12 @@ def _start(
     held, tabs = held_at_start(network), with_tab(network)
     places = {place.mass: place for place in placement.masses}
     phases = {mass.name: mass.phase for mass in network.masses}
-    cover = shapely.union_all([body.section for body in bodies if body.kind is BodyKind.COVER])
+    decks = decks_of(bodies, process)
+    covers = {
+        deck: shapely.union_all([body.section for body in own if body.kind is BodyKind.COVER])
+        for deck, own in decks.items()
+    }
+    two = bool(decks[Deck.UPPER])
     tab_at = {
         body.moves_with[0].partition(":")[2]: body.section.representative_point()
         for body in bodies
@@ -232,8 +277,9 @@ def _start(
     }
     open_pins = {
         body.moves_with[0].partition(":")[2]: body.section.centroid
-        for body in bodies
-        if body.name.startswith("pin.hub.") and not cover.intersects(body.section)
+        for deck, own in decks.items()
+        for body in own
+        if body.name.startswith("pin.hub.") and not covers[deck].intersects(body.section)
     }
     settings, pushes = [], []
     for number, mass in enumerate(sorted(held, key=lambda name: (-places[name].y, places[name].x)), start=1):
@@ -245,6 +291,8 @@ def _start(
                 (open_pins[mass].x, open_pins[mass].y),
                 "the head of its hub pin, through the window in the cover",
             )
+            if two:
+                by = f"its hub pin, in the window or slot of the cover of the {places[mass].deck} deck"
         away = math.copysign(sizing.rules.throw, held[mass])
         side = _side(away)
         settings.append(

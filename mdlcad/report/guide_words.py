@@ -16,6 +16,7 @@ TITLES = {
     StepKind.RUNGS: "Lay the rung plate {plate}",
     StepKind.COVER: "Put the cover on",
     StepKind.POSTS: "Push the posts in",
+    StepKind.JOIN: "Lay the upper deck on the lower one",
     StepKind.SCREWS: "Screw the stack together",
 }
 
@@ -79,6 +80,14 @@ def words_of(step: AssemblyStep, process: Process, sizing: Sizing) -> tuple[str,
         return tuple(words)
     if step.kind is StepKind.COVER:
         return (f"{below}Lay the cover on the rim. Its windows show the hub pins that the starting state needs.",)
+    if step.kind is StepKind.JOIN:
+        return (
+            "Set the starting state of both decks first, as described at the end, and leave their clock plates there.",
+            f"{below}Turn the upper deck over, left to right, and lower it cover on cover.",
+            "Long hub pins stand out of both covers: guide each through the slots of the other cover and press it into "
+            "the blocks that wait for it on the other deck's rung plates.",
+            "Couple the two clock plates of every phase by their handles: they move as one.",
+        )
     if step.kind is StepKind.POSTS:
         return (
             "Push each post through its hole in the cover down into the eye below, flush with the cover.",

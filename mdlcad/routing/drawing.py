@@ -131,7 +131,7 @@ def _units(pen: Pen, network: Network, placement: Placement, rules: LayoutRules)
         if isinstance(unit.deck, Deck) and unit.deck is not here:
             low, high = (unit.x - rules.unit_left, unit.y - half), (unit.x + rules.unit_right, unit.y + half)
             pen.box(low, high, 'class="lf"', f"bare hub of {unit.mass}, whose unit is in the {unit.deck} deck", 1.0)
-            pen.text(low[0] + 1.2, high[1] - 3.0, "bare hub", 'class="lp"')
+            pen.text(low[0] + 1.2, low[1] + 1.0, "bare hub", 'class="lp"')
             continue
         words = f"{unit.mass}: {mass.kind.value}, phase {mass.phase}, column {unit.column}, row {unit.row}"
         low, high = (unit.x - rules.unit_left, unit.y - half), (unit.x + rules.unit_right, unit.y + half)
