@@ -41,7 +41,7 @@ def test_both_decks_are_legal_and_together_hold_every_coupling_once():
 
 
 def test_a_crossing_net_has_its_unit_in_one_deck_and_a_bare_hub_in_the_other():
-    network, rules, placement, layout = both()
+    network, _, placement, layout = both()
     units = units_of(placement)
     assert units is not None
     across = set(crossing(network, units))
