@@ -26,6 +26,8 @@ SPAN = 3 * HARD
 WIRE = 0.06
 ORDER = 0.03
 SHARED = 4.0
+REFRESH = 500
+"""Moves after which the masses that broken rules are about are listed anew."""
 
 # columns of State.row, the tallies of one (channel, row); A hangs on the left of the channel, B on the right
 VIA_A, VIA_B, BIAS_A, BIAS_B, STRAIGHT, POST_A, POST_B, SPOST_A, SPOST_B = range(9)
@@ -235,25 +237,32 @@ def _tracks(p: Problem, s: State, band: int) -> float:
     for _ in range(2):
         for k in range(asked):
             due[s.orders[k, 0]] = min(due[s.orders[k, 0]], due[s.orders[k, 1]] - pitch)
-    for left in range(n, 0, -1):
+    alive, left = s.alive, n
+    for i in range(n):
+        alive[i] = i
+    while left > 0:
         first = 1e18
-        for i in range(n):
-            if waits[i] == 0:
-                first = min(first, at[i])
+        for k in range(left):
+            if waits[alive[k]] == 0:
+                first = min(first, at[alive[k]])
         if first > 1e17:
             # nets that wait for one another in a ring
             return cost + HARD * left
-        best = -1
-        for i in range(n):
+        best, where = -1, 0
+        for k in range(left):
+            i = alive[k]
             if waits[i] == 0 and at[i] < first + pitch / 2 and (best < 0 or due[i] < due[best]):
-                best = i
+                best, where = i, k
         late = at[best] - s.window[nets[best], 1]
         if late > 1e-6 and s.window[nets[best], 0] <= s.window[nets[best], 1]:
             cost += HARD * (0.5 + late / pitch)
-        waits[best] = -1
+        left -= 1
+        for k in range(where, left):
+            alive[k] = alive[k + 1]
         lowest, highest = s.rows[nets[best], 0], s.rows[nets[best], 1]
-        for i in range(n):
-            if waits[i] >= 0 and s.rows[nets[i], 0] <= highest and lowest <= s.rows[nets[i], 1]:
+        for k in range(left):
+            i = alive[k]
+            if s.rows[nets[i], 0] <= highest and lowest <= s.rows[nets[i], 1]:
                 at[i] = max(at[i], at[best] + pitch)
         k = s.last[best]
         while k >= 0:
@@ -426,10 +435,50 @@ def _hard(p: Problem, s: State, tracks: Floats, all_masses: Ints) -> float:
 
 
 @numba.njit(cache=True, error_model="numpy")
+def _troubled(p: Problem, s: State, tracks: Floats, found: Ints, seen: Ints) -> int:
+    """List the masses that broken rules are about: their trunks share a band with one, or they meet a row with one."""
+    n = 0
+    seen[:] = 0
+    for band in range(len(tracks)):
+        if tracks[band] > 1e-6:
+            for i in range(s.trunk_count[band]):
+                n = _note(s.trunks[band, i] // 2, found, seen, n)
+    for channel in range(s.row.shape[0]):
+        for row in range(s.row.shape[1]):
+            t = s.row[channel, row]
+            if _row_cost(t, p.is_open[channel, row], int(p.sizes[2])) < 1e-6:
+                continue
+            for side in range(2):
+                for i in range(t[VIA_A + side]):
+                    n = _note(s.items[channel, row, side, i] // 4, found, seen, n)
+                column = channel - 1 + side
+                if 0 <= column < p.slot_at.shape[0] and p.slot_at[column, row] >= 0:
+                    n = _note(s.mass_at[p.slot_at[column, row]], found, seen, n)
+    return n
+
+
+@numba.njit(cache=True, error_model="numpy", forceinline=True)
+def _note(mass: int, found: Ints, seen: Ints, n: int) -> int:
+    if mass < 0 or seen[mass]:
+        return n
+    seen[mass], found[n] = 1, mass
+    return n + 1
+
+
+@numba.njit(cache=True, error_model="numpy")
 def anneal(
-    p: Problem, s: State, random: npt.NDArray[np.uint64], moves: int, hot: float, cold: float, fixed: bool
+    p: Problem,
+    s: State,
+    random: npt.NDArray[np.uint64],
+    moves: int,
+    hot: float,
+    cold: float,
+    fixed: bool,
+    focus: float = 0.0,
 ) -> float:
     """Anneal in place; ``fixed`` keeps the slots and changes sides only. Returns the cost of broken rules that is left.
+
+    A share ``focus`` of the moves is on masses that broken rules are about.
 
     Ends as soon as no rule is broken, but not in the hot first half, so that wires shrink too.
 
@@ -438,6 +487,7 @@ def anneal(
     """
     masses, couplings = len(s.mass), len(p.coupling)
     nets = np.arange(max(masses, 4 * DEEP)).astype(np.int32)
+    s.row[:], s.trunk_count[:] = 0, 0
     for mass in range(masses):
         nets[0] = mass
         _tally(p, s, nets, 1, mass, -1, 1)
@@ -447,7 +497,10 @@ def anneal(
         known[channel] = _tracks(p, s, channel)
     new = known.copy()
     everyone = np.arange(masses).astype(np.int32)
+    found, seen, troubled = everyone.copy(), np.zeros(masses, np.int32), 0
     for move in range(moves):
+        if focus > 0 and move % REFRESH == 0:
+            troubled = _troubled(p, s, known, found, seen)
         if move % 1000 == 0 and 2 * move > moves and _hard(p, s, known, everyone) < 1e-6:
             break
         heat = hot * (cold / hot) ** (move / moves)
@@ -455,10 +508,18 @@ def anneal(
         if fixed or _draw(random) < 0.15:
             kind = 0 if couplings > 0 and _draw(random) < 0.5 else 1
         mass, other, n, coupling, slot, reach = int(_draw(random) * masses), -1, 0, 0, 0, 0.0
+        focused = troubled > 0 and _draw(random) < focus
+        if focused:
+            mass = found[int(_draw(random) * troubled)]
         old = s.mass[mass, SLOT]
         change = 0.0
         if kind == 0:
             coupling = int(_draw(random) * couplings)
+            if focused:
+                coupling = p.mass[mass, 0] + int(_draw(random) * (p.mass[mass + 1, 0] - p.mass[mass, 0]))
+                if coupling == p.mass[mass + 1, 0]:
+                    continue
+                coupling = p.outs[coupling]
             nets[0] = p.coupling[coupling, 0]
             n, mass = 1, -1
             if p.slot[s.mass[nets[0], SLOT], 0] != p.slot[s.mass[p.coupling[coupling, 1], SLOT], 0]:
@@ -492,11 +553,21 @@ def anneal(
                 _swap(s, mass, slot if attempt == 0 else old)
             change += _tally(p, s, nets, n, mass, other, 1)
             if attempt == 0:
+                least = change
                 for channel in range(len(known)):
                     if s.dirty[channel]:
-                        new[channel] = _tracks(p, s, channel)
-                        change += new[channel] - known[channel]
-                taken = change <= 0 or _draw(random) < math.exp(-change / heat)
+                        least -= known[channel]
+                # tracks cost nothing at best: most moves are thrown out before the packing
+                chance = _draw(random) if least > 0 else 2.0
+                taken = least <= 0 or chance < math.exp(-least / heat)
+                if taken:
+                    for channel in range(len(known)):
+                        if s.dirty[channel]:
+                            new[channel] = _tracks(p, s, channel)
+                            change += new[channel] - known[channel]
+                    if change > 0 and chance > 1:
+                        chance = _draw(random)
+                    taken = change <= 0 or chance < math.exp(-change / heat)
             for channel in range(len(known)):
                 if s.dirty[channel] and (attempt == 1 or taken):
                     s.dirty[channel] = 0

@@ -1,26 +1,50 @@
-"""A start for networks too large for an exact choice of columns: level by level away from the ports.
+"""A start for networks too large for an exact choice of columns.
 
-Masses are counted in levels by the least number of couplings from a mass with a port. A coupling then joins one level
-or two neighbouring ones, so columns that take whole levels in turn never put it more than one column too far. Within
-its column a mass goes to the height of those it is coupled to.
+1. Masses are counted in levels by the least number of couplings from a mass with a port: a coupling then joins one
+   level or two neighbouring ones.
+2. Every level goes to one column, the next to the same column or a neighbour, so no coupling spans more than one. The
+   path goes to and fro across a strip of columns, from one end of it to the other, and then on to the next strip.
+3. Columns are annealed until no hub has more on a side than it holds (``crossings``).
+4. Within its column a mass goes to the height of those it is coupled to, and into rows of the column's own parity where
+   these suffice: two hubs of one row are what asks for an order of trunks.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
+from mdlcad.placement.crossings import settle_columns
 from mdlcad.placement.lattice import Lattice
 from mdlcad.placement.problem import Ints, Problem
+from mdlcad.placement.state import random_source
 
+STRIP = 4
+"""Columns of a strip, about: a strip's levels must not be taller than the strip is wide by far."""
+SETTLE, SETTLE_HOT, SETTLE_COLD = 1000, 3.0, 0.2
+"""Moves a mass of the annealing of columns, and its heats."""
+CELL, CROWDED = 12, 1.15
+"""Rows of a cell; how much fuller than the average cell one may be."""
 _SWEEPS = 12
 
 
-def slots_by_levels(problem: Problem, lattice: Lattice) -> Ints:
+def slots_by_levels(problem: Problem, lattice: Lattice, seed: int) -> Ints:
     """A slot for every mass."""
     masses = len(problem.mass) - 1
     beside = _neighbours(problem, masses)
-    column = _columns(_levels(problem, beside, masses), lattice)
-    return _rows(column, beside, lattice)
+    levels = _levels(problem, beside, masses)
+    path = _path([len(level) for level in levels], lattice)
+    column, order = np.zeros(masses, np.int32), np.zeros(masses)
+    for rank, (level, (at, down)) in enumerate(zip(levels, path, strict=True)):
+        column[level], order[level] = at, -rank if down else rank
+    height = _heights(_stand(_fitted(column, lattice), order, beside, lattice), lattice)
+    cell = (height // CELL).astype(np.int32)
+    room = np.zeros((len(lattice.column_x), int(np.max(cell)) + 1))
+    for at, row in lattice.slots:
+        room[at, min(row // CELL, room.shape[1] - 1)] += CROWDED * masses / len(lattice.slots)
+    into = np.argsort(problem.coupling[:, 1], kind="stable").astype(np.int32)
+    moves, source = SETTLE * masses, random_source(seed)
+    settle_columns(problem, into, column, cell, room, source, moves, SETTLE_HOT, SETTLE_COLD)
+    return _stand(_fitted(column, lattice), height, beside, lattice)
 
 
 def _neighbours(problem: Problem, masses: int) -> list[list[int]]:
@@ -47,42 +71,73 @@ def _levels(problem: Problem, beside: list[list[int]], masses: int) -> list[list
     return levels
 
 
-def _columns(levels: list[list[int]], lattice: Lattice) -> Ints:
-    """A column for every mass: all columns alike full, whole levels where they fit."""
-    rooms = np.bincount([column for column, _ in lattice.slots], minlength=len(lattice.column_x))
-    order = [mass for level in levels for mass in level]
-    share = len(order) / len(lattice.slots)
-    column = np.zeros(len(order), np.int32)
-    held = np.zeros(len(rooms), np.int64)
-    at, placed, due = 0, 0, rooms[0] * share
-    for level in levels:
-        # a level stands in the next column (no further) if most of it would be beyond this one's share
-        if at + 1 < len(rooms) and placed + len(level) / 2 > due:
+def _path(sizes: list[int], lattice: Lattice) -> list[tuple[int, bool]]:
+    """By level, its column and whether its strip is filled from the top down. Outermost columns count half."""
+    room = np.bincount([column for column, _ in lattice.slots], minlength=len(lattice.column_x)).astype(float)
+    room[0] /= 2
+    room[-1] /= 2
+    share = sum(sizes) / np.sum(room)
+    strips = max(1, round(len(room) / STRIP))
+    ends = [round(len(room) * i / strips) for i in range(strips + 1)]
+    used = np.zeros(len(room))
+    path: list[tuple[int, bool]] = []
+    at, strip, ahead = 0, 0, 1
+    for rank, size in enumerate(sizes):
+        low, high = ends[strip], ends[strip + 1] - 1
+        if (
+            rank
+            and strip + 1 < strips
+            and np.sum(room[low : high + 1] * share - used[low : high + 1]) <= sum(sizes[rank : rank + high - at])
+        ):
+            # the strip's last levels lead over to the next one
             at += 1
-            due += rooms[at] * share
-        for mass in level:
-            near = np.abs(np.arange(len(rooms)) - at) + np.where(held < rooms, 0, len(rooms))
-            column[mass] = int(np.argmin(near))
-            held[column[mass]] += 1
-        placed += len(level)
-    return column
+            strip += int(at > high)
+        elif rank:
+            near = [step for step in (ahead, 0, -ahead) if low <= at + step <= high]
+            step = min(near, key=lambda step: (used[at + step] + size / 2) / max(room[at + step], 0.5))
+            at += step
+            ahead = step or ahead
+        used[at] += size
+        path.append((at, strip % 2 == 1))
+    return path
 
 
-def _rows(column: Ints, beside: list[list[int]], lattice: Lattice) -> Ints:
-    """A slot for every mass: each column in the order of its masses' mean neighbours, spread over its slots."""
+def _fitted(column: Ints, lattice: Lattice) -> Ints:
+    """``column``, with what a column has no slots for in the nearest that has."""
+    free = np.bincount([at for at, _ in lattice.slots], minlength=len(lattice.column_x))
+    fitted = column.copy()
+    for mass, at in enumerate(column.tolist()):
+        near = np.abs(np.arange(len(free)) - at) + np.where(free > 0, 0, len(free))
+        fitted[mass] = int(np.argmin(near))
+        free[fitted[mass]] -= 1
+    return fitted
+
+
+def _heights(slot: Ints, lattice: Lattice) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+    return np.array([float(lattice.slots[index][1]) for index in slot.tolist()])
+
+
+def _stand(
+    column: Ints, order: np.ndarray[tuple[int], np.dtype[np.float64]], beside: list[list[int]], lattice: Lattice
+) -> Ints:
+    """A slot for every mass: each column first in ``order``, then by mean neighbours, spread over its slots."""
     slots: list[list[int]] = [[] for _ in lattice.column_x]
     for index, (at, _) in sorted(enumerate(lattice.slots), key=lambda item: item[1]):
         slots[at].append(index)
     members: list[list[int]] = [[] for _ in lattice.column_x]
     for mass, at in enumerate(column.tolist()):
         members[at].append(mass)
-    height = np.zeros(len(column))
-    slot = np.zeros(len(column), np.int32)
+    for at, free in enumerate(slots):
+        own = [slot for slot in free if lattice.slots[slot][1] % 2 == at % 2]
+        slots[at] = own if len(own) >= len(members[at]) else free
+    height, slot = order.astype(float), np.zeros(len(column), np.int32)
     for sweep in range(_SWEEPS):
         for at in range(len(members)) if sweep % 2 == 0 else reversed(range(len(members))):
-            if sweep:
-                wish = {mass: float(np.mean(height[beside[mass]])) if beside[mass] else 0.0 for mass in members[at]}
-                members[at].sort(key=lambda mass: (wish[mass], mass))
+            wish = {
+                mass: float(np.mean(height[beside[mass]])) if sweep and beside[mass] else float(height[mass])
+                for mass in members[at]
+            }
+            members[at].sort(key=lambda mass: (wish[mass], mass))
             free, count = slots[at], len(members[at])
             for k, mass in enumerate(members[at]):
                 slot[mass] = free[(2 * k + 1) * len(free) // (2 * count)]

@@ -11,8 +11,8 @@ from mdlcad.mechanics.rules import LayoutRules
 from mdlcad.network.model import Network
 from mdlcad.placement.anneal import anneal
 from mdlcad.placement.columns import choose_columns
+from mdlcad.placement.large import mend, place_large
 from mdlcad.placement.lattice import Lattice
-from mdlcad.placement.levels import slots_by_levels
 from mdlcad.placement.placement import PlacedMass, Placement
 from mdlcad.placement.problem import Ints, Problem, build, realisable
 from mdlcad.placement.state import State, start
@@ -21,8 +21,8 @@ MOVES_PER_MASS = 8000
 SIDE_MOVES_PER_MASS = 2000
 HOT, COLD = 8.0, 0.5
 LARGE = 100
-"""Networks of more masses start level by level and anneal from WARM, LARGE_MOVES and LARGE_SIDE_MOVES a mass."""
-WARM, LARGE_MOVES, LARGE_SIDE_MOVES = 1.5, 1500, 200
+"""Networks of more masses are placed by ``large``; LARGE_SIDE_MOVES a mass choose their sides."""
+LARGE_SIDE_MOVES = 200
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,12 +39,10 @@ def place(
     """Anneal ``network`` onto ``lattice``, which must have a slot for every mass. Same arguments, same result."""
     problem = build(network, lattice, rules)
     if len(network.masses) > LARGE:
-        state, source = start(problem, slots_by_levels(problem, lattice), seed)
-        moves, hot = min(moves_per_mass, LARGE_MOVES), WARM
+        state, cost = place_large(problem, lattice, seed, moves_per_mass)
     else:
         state, source = start(problem, np.array(_start(problem, lattice, len(network.masses), seed), np.int32), seed)
-        moves, hot = moves_per_mass, HOT
-    cost = anneal(problem, state, source, moves * len(network.masses), hot, COLD, False)
+        cost = anneal(problem, state, source, moves_per_mass * len(network.masses), HOT, COLD, False)
     return PlaceResult(placement_of(network, lattice, state.mass[:, 0], seed), float(cost))
 
 
@@ -94,9 +92,12 @@ def choose_sides(network: Network, placement: Placement, lattice: Lattice, rules
     problem = build(network, lattice, rules)
     index = {slot: i for i, slot in enumerate(lattice.slots)}
     where = {placed.mass: index[placed.column, placed.row] for placed in placement.masses}
-    state, source = start(problem, np.array([where[mass.name] for mass in network.masses], np.int32), seed)
-    moves = LARGE_SIDE_MOVES if len(network.masses) > LARGE else SIDE_MOVES_PER_MASS
-    cost = anneal(problem, state, source, moves * len(network.masses), HOT, COLD, True)
+    slots, masses = np.array([where[mass.name] for mass in network.masses], np.int32), len(network.masses)
+    state, source = start(problem, slots, seed)
+    moves = LARGE_SIDE_MOVES if masses > LARGE else SIDE_MOVES_PER_MASS
+    cost = anneal(problem, state, source, moves * masses, HOT, COLD, True)
+    if masses > LARGE:
+        cost = mend(problem, state, source, cost, True)
     return sides_of(network, placement, rules, state, float(cost))
 
 

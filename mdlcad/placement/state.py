@@ -11,9 +11,6 @@ from mdlcad.placement.problem import Floats, Ints, Problem
 
 DEEP = 16
 """Most items that can meet one side of a row of a channel."""
-MANY, BAND = 100, 24
-"""With more masses than MANY, at most BAND rows of trunks are packed together, so that a move costs no more in a large
-device; a trunk in more bands takes the packing's cost in each. What is legal in every band need not be so in all."""
 COLUMN = -2
 """A home of ``COLUMN - c`` is any slot of column c."""
 
@@ -29,7 +26,7 @@ class State(NamedTuple):
             B equal parts of the rows of channel c.
         window, rows: by net-channel, lowest and highest x (mm) and row of its trunk.
         dirty: bands whose trunks have changed.
-        seat: by net-channel, its place in the band that is being packed. at, due, waits, last, orders: room for
+        seat: by net-channel, its place in the band that is being packed. at, due, waits, last, alive, orders: room for
             packing tracks; an order is (first, second, order before it with the same first or -1).
         home: (max(M, J), 3) by mass the slot (or column, see ``COLUMN``) and bias side, by coupling the channel side
             that it should keep, or -1.
@@ -51,13 +48,16 @@ class State(NamedTuple):
     due: Floats
     waits: Ints
     last: Ints
+    alive: Ints
     orders: Ints
     home: Ints
     price: Floats
 
 
-def start(problem: Problem, slot_of: Ints, seed: int) -> tuple[State, npt.NDArray[np.uint64]]:
-    """A state with the given slots and a seeded random source.
+def start(problem: Problem, slot_of: Ints, seed: int, band: int | None = None) -> tuple[State, npt.NDArray[np.uint64]]:
+    """A state with the given slots, and a seeded random source.
+
+    Trunks are packed in bands of at most ``band`` rows; None packs whole channels.
 
     Raises:
         ValueError: a mass has more inputs than a row of a channel can hold.
@@ -65,7 +65,7 @@ def start(problem: Problem, slot_of: Ints, seed: int) -> tuple[State, npt.NDArra
     masses, channels, rows = len(slot_of), problem.limits.shape[0], problem.limits.shape[1]
     if masses and int(np.max(np.diff(problem.mass[:, 1]))) + 6 > DEEP:
         raise ValueError("a mass has too many inputs for the placer")
-    together = BAND if masses > MANY else max(1, rows)
+    together = max(1, rows if band is None else min(rows, band))
     bands = channels * max(1, -(-rows // together))
     mass_at = np.full(len(problem.slot), -1, np.int32)
     mass_at[slot_of] = np.arange(masses, dtype=np.int32)
@@ -85,12 +85,17 @@ def start(problem: Problem, slot_of: Ints, seed: int) -> tuple[State, npt.NDArra
         due=np.zeros(masses + 1),
         waits=np.zeros(masses + 1, np.int32),
         last=np.zeros(masses + 1, np.int32),
+        alive=np.zeros(masses + 1, np.int32),
         orders=np.zeros((min(rows, together) * 3 * DEEP * DEEP, 3), np.int32),
         home=np.full((max(masses, len(problem.coupling)), 3), -1, np.int32),
         price=np.zeros(2),
     )
-    # splitmix64 spreads neighbouring seeds apart
+    return state, random_source(seed)
+
+
+def random_source(seed: int) -> npt.NDArray[np.uint64]:
+    """The state of a generator; splitmix64 spreads neighbouring seeds apart."""
     z: Any = (seed * 0x9E3779B97F4A7C15 + 0x9E3779B97F4A7C15) & 0xFFFFFFFFFFFFFFFF
     z = ((z ^ (z >> 30)) * 0xBF58476D1CE4E5B9) & 0xFFFFFFFFFFFFFFFF
     z = ((z ^ (z >> 27)) * 0x94D049BB133111EB) & 0xFFFFFFFFFFFFFFFF
-    return state, np.array([(z ^ (z >> 31)) | 1], np.uint64)
+    return np.array([(z ^ (z >> 31)) | 1], np.uint64)

@@ -6,11 +6,12 @@ import pytest
 from mdlcad.network.model import Coupling, CouplingKind
 from mdlcad.placement.anneal import HARD, anneal
 from mdlcad.placement.grid import RESOLUTION, way
+from mdlcad.placement.large import BAND
 from mdlcad.placement.lattice import Lattice, lattices, place_ports
 from mdlcad.placement.linkable import unrealisable
 from mdlcad.placement.placer import choose_sides, place
 from mdlcad.placement.problem import build
-from mdlcad.placement.state import BAND, start
+from mdlcad.placement.state import start
 from tests.placement.networks import SQUARE, small
 
 SCALE = 3.9
