@@ -16,8 +16,8 @@ from mdlcad.placement.grid import RESOLUTION
 from mdlcad.routing.channel import ChannelRoute, solve
 from mdlcad.routing.pieces import Channel, Edge, Item
 
-MOST_TRUNKS = 40
-"""A channel of more trunks is routed in windows."""
+MOST_TRUNKS = 100
+"""A channel of more trunks is routed in windows, which may miss the routing that the whole of it has."""
 ROWS = 8
 """Rows that a window decides; it looks as many further up."""
 
