@@ -12,6 +12,7 @@ from mdlcad.compare.fields import counted, keyed_changes, largest_first, same_nu
 from mdlcad.compare.folders import Build, NotComparable, read
 from mdlcad.compare.pair import Findings, Pair
 from mdlcad.errors import UsageError
+from mdlcad.mechanics.decks import Deck
 from mdlcad.placement.placement import PlacedMass, Placement
 from mdlcad.placement.unit_grid import GridPlacement
 
@@ -46,7 +47,7 @@ def placement_changes(pair: Pair) -> Findings:
         if after is not None:
             move = _move("unit", name, (before.x, before.y), (after.x, after.y), pair.tolerance_mm)
             slots = (after.column - before.column, after.row - before.row)
-            if move is not None or slots != (0, 0):
+            if move is not None or slots != (0, 0) or _deck(before) is not _deck(after):
                 moves.append(_with_slots(move, name, before, after, slots))
     changes += moves
     ports_a, ports_b = {port.bit: port for port in a.ports}, {port.bit: port for port in b.ports}
@@ -144,10 +145,12 @@ def _move(
 def _with_slots(
     move: Change | None, name: str, before: PlacedMass, after: PlacedMass, slots: tuple[int, int]
 ) -> Change:
-    if slots == (0, 0) and move is not None:
+    same = _deck(before) is _deck(after)
+    if slots == (0, 0) and move is not None and same:
         return Change("unit", name, Sort.MOVED, f"{move.words}, in its slot", move.fields, move.size, "mm", move.spots)
     across, along = slots
-    over = " and ".join(counted(abs(n), word) for n, word in ((across, "column"), (along, "row")) if n)
+    steps = [counted(abs(n), word) for n, word in ((across, "column"), (along, "row")) if n]
+    over = " and ".join([*steps, *([] if same else [f"to the {_deck(after)} deck"])])
     fields = (
         *(move.fields if move is not None else ()),
         FieldChange("column", before.column, after.column),
@@ -176,6 +179,11 @@ def _common(moves: Sequence[Change]) -> tuple[float, float, int] | None:
         return None
     (dx, dy), count = shifts.most_common(1)[0]
     return (dx, dy, count) if 2 * count > len(moves) else None
+
+
+def _deck(unit: PlacedMass) -> Deck:
+    """Where the unit is; a device with one unit plate has the lower deck alone."""
+    return Deck.UPPER if unit.deck is Deck.UPPER else Deck.LOWER
 
 
 def _slot(unit: PlacedMass) -> str:

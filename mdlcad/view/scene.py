@@ -53,8 +53,9 @@ class Scene:
             UsageError: it asks for a plate that the device has not.
         """
         if look.plates is None:
-            # the cover hides what is under it; shims and pins hang loose between plates that are apart
-            hidden = {"cover"} | (set(LOOSE) if look.explode > 0.0 else set())
+            # what is on top hides what is under it; shims and pins hang loose between plates that are apart
+            top = max(self.built.bodies, key=lambda body: (body.plate not in LOOSE, body.z)).plate
+            hidden = {top} | (set(LOOSE) if look.explode > 0.0 else set())
             return tuple(plate for plate in self.model.plates if plate not in hidden)
         for plate in look.plates:
             if plate not in self.model.plates:

@@ -31,7 +31,8 @@ def write_views(bodies: Sequence[Body], folder: Path, progress: Callable[[str], 
         write_picture(shown, views / f"{name}.png", from_above=from_above, lift_mm=lift_mm)
         written.append(f"views/{name}.png")
 
-    picture("stack", [body for body in bodies if body.plate != "cover"], from_above=False)
+    # what is on top hides all else: the cover, or of two decks the upper one's base
+    picture("stack", [body for body in bodies if body.plate != order[-1]], from_above=False)
     # shims and stock would hang between the plates
     apart = [body for body in bodies if body.plate in cut]
     picture("exploded", apart, from_above=False, lift_mm=lift)
