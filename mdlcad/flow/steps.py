@@ -109,9 +109,9 @@ def _place_and_route(job: Job, state: State, progress: Progress) -> State:
     return replace(state, placement=best.result.placement, layout=best.result.layout, search=best.search)
 
 
-def _stacked(job: Job, state: State) -> Process:
+def _stacked(process: Process, state: State) -> Process:
     """The process with as many decks as the device has."""
-    return process_of(job.process, need(state.placement))
+    return process_of(process, need(state.placement))
 
 
 def _carriers(state: State, process: Process) -> tuple[CarrierStiffness, ...]:
@@ -120,7 +120,7 @@ def _carriers(state: State, process: Process) -> tuple[CarrierStiffness, ...]:
 
 
 def _compensate(job: Job, state: State, progress: Progress) -> State:
-    sizing, carriers = need(state.sizing), _carriers(state, _stacked(job, state))
+    sizing, carriers = need(state.sizing), _carriers(state, _stacked(job.process, state))
     try:
         found = compensate(
             need(state.network), job.process, sizing, {item.coupling: item.stiffness for item in carriers}
@@ -146,7 +146,7 @@ def _build_parts(job: Job, state: State, progress: Progress) -> State:
         need(state.layout),
         need(state.sizing),
     )
-    bodies = build_parts(network, placement, layout, sizing, _stacked(job, state), Polygon(placement.boundary))
+    bodies = build_parts(network, placement, layout, sizing, _stacked(job.process, state), Polygon(placement.boundary))
     return replace(state, bodies=bodies)
 
 
@@ -158,7 +158,7 @@ def _check_geometry(job: Job, state: State, progress: Progress) -> State:
         need(state.layout),
         need(state.bodies),
         state.carriers,
-        _stacked(job, state),
+        _stacked(job.process, state),
     )
     return replace(state, rules=rules)
 
@@ -175,7 +175,7 @@ def _guide(job: Job, state: State, progress: Progress) -> State:
         need(state.network),
         need(state.sizing),
         need(state.placement),
-        _stacked(job, state),
+        _stacked(job.process, state),
         need(state.bodies),
         need(state.drive),
     )
@@ -187,7 +187,7 @@ def _export(job: Job, state: State, progress: Progress) -> State:
     from mdlcad.export.files import write_files  # the CAD kernel takes seconds to load; early stages need not wait
 
     name, bodies = need(state.network).design, need(state.bodies)
-    process = _stacked(job, state)
+    process = _stacked(job.process, state)
     files = write_files(name, bodies, process, job.kerf_mm, job.folder, job.workers, progress)
     return replace(state, files=files)
 
@@ -197,7 +197,7 @@ def _lvs(job: Job, state: State, progress: Progress) -> State:
     found = read_step(job.folder / f"{network.design}.step")
     recovered = recover(found)
     result = compare(recovered, network)
-    process = _stacked(job, state)
+    process = _stacked(job.process, state)
     drawn = measure_device(found, read_cut(job.folder, process), recovered, process)
     built = Built(drawn, network, need(state.sizing), state.carriers, process)
     reference = build_reference(need(state.device))
@@ -260,7 +260,12 @@ def _restore_placed(job: Job, state: State, files: tuple[str, ...]) -> State:
 
 def _restore_compensation(job: Job, state: State, files: tuple[str, ...]) -> State:
     found, sizing = load(job.folder, COMPENSATION_FILE, Compensation), need(state.sizing)
-    return replace(state, compensation=found, sizing=compensated(sizing, found), carriers=_carriers(state, job.process))
+    return replace(
+        state,
+        compensation=found,
+        sizing=compensated(sizing, found),
+        carriers=_carriers(state, _stacked(job.process, state)),
+    )
 
 
 def _restore_parts(job: Job, state: State, files: tuple[str, ...]) -> State:

@@ -90,7 +90,7 @@ def _describe(found: Token) -> str:
         return "a text that does not end on its line"
     if not found:
         return "the end of the file"
-    return str(found) if found.type == "STRING" and len(found) < 40 else f"'{shown(found)}'"
+    return shown(found) if found.type == "STRING" and len(found) < 40 else f"'{shown(found)}'"
 
 
 def _hint(found: Token, construct: str, expected: list[str]) -> str:

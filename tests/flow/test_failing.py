@@ -56,7 +56,7 @@ def test_a_layout_that_is_not_found_leaves_what_was_made(sized, tmp_path, monkey
 
     monkeypatch.setattr(placing, "place_and_route", jammed)
     folder = tmp_path / "jammed"
-    assert main(["build", str(sized), "--from", "placement", "-o", str(folder)]) == FAILS
+    assert main(["build", str(sized), "--from", "placement", "--unit-plates", "1", "-o", str(folder)]) == FAILS
     found = report(folder)
     assert found["stopped"] == {"stage": "placement", "reason": "channel 1: no legal tracks for 7 nets"}
     assert found["failures"] == ["placement: channel 1: no legal tracks for 7 nets"]

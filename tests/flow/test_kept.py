@@ -140,14 +140,14 @@ def test_a_build_that_does_not_hold_goes_beside_the_one_that_does(early, monkeyp
 
     monkeypatch.setattr(placing, "place_and_route", jammed)
     before = (early / "report.json").read_bytes()
-    assert main(["build", str(VOTER), "-o", str(early)]) == FAILS
+    assert main(["build", str(VOTER), "--unit-plates", "1", "-o", str(early)]) == FAILS
     assert (early / "report.json").read_bytes() == before
     failed = early.with_name("voter.failed")
     assert report(failed)["stopped"]["stage"] == "placement"
     said = capsys.readouterr().out
     assert "keeps the build that it has, which holds" in said and f"written to {failed}" in said
     # one that does not hold may be replaced by another
-    assert main(["build", str(VOTER), "-o", str(failed)]) == FAILS
+    assert main(["build", str(VOTER), "--unit-plates", "1", "-o", str(failed)]) == FAILS
     assert sorted(path.name for path in early.parent.iterdir()) == ["voter", "voter.failed"]
 
 

@@ -9,7 +9,7 @@ import time
 from pathlib import Path
 
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
 from mdlcad.artefact import from_json, to_json
@@ -49,6 +49,7 @@ def test_any_text(text: str) -> None:
 
 @settings(max_examples=300, deadline=None)
 @given(st.lists(st.sampled_from(PIECES), max_size=60), st.sampled_from(["", " "]))
+@example(['"', "\0", '"'], "")
 def test_pieces_of_the_language_in_any_order(pieces: list[str], joint: str) -> None:
     parse_or_refuse(joint.join(pieces))
 
