@@ -16,6 +16,7 @@ from mdlcad.mapping.options import TICK0, TICK2, Guard, Of, OptionGraph
 from mdlcad.mapping.plan import Key, Role
 from mdlcad.mapping.selection import COUPLING_COST, CYCLE_COST, MASS_COST, Selection, arrivals
 from mdlcad.mapping.tickring import LEAST_CYCLES, plan_ring
+from mdlcad.solver import solver_with
 
 _TIMED = (Role.LOGIC, Role.PORT, Role.STORE, Role.FOLLOW)
 
@@ -178,11 +179,8 @@ def best_cover(graph: OptionGraph, start: Selection, deterministic_time: float, 
     """The best selection found from ``start`` within the deterministic time; at worst as good as ``start``."""
     model = _Model(graph, start.cycles)
     model.hint(start)
-    solver = cp_model.CpSolver()
-    solver.parameters.num_workers = 1
+    solver = solver_with(seed, deterministic_time)
     solver.parameters.interleave_search = True
-    solver.parameters.random_seed = seed
-    solver.parameters.max_deterministic_time = deterministic_time
     status = solver.solve(model.model)
     if status not in (cp_model.OPTIMAL, cp_model.FEASIBLE):
         return start

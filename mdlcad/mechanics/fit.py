@@ -79,7 +79,9 @@ class UnitCurve:
             ArithmeticError: the law finds no equilibrium at one of them.
         """
         self.least, self.most = least, most
-        nodes = (least + most) / 2.0 + (most - least) / 2.0 * np.cos(np.pi * (np.arange(_DEGREE + 1) + 0.5) / 7.0)
+        nodes = (least + most) / 2.0 + (most - least) / 2.0 * np.cos(
+            np.pi * (np.arange(_DEGREE + 1) + 0.5) / (_DEGREE + 1)
+        )
         fits = [fit_unit(numbers, float(node), swing, reaches, scale) for node in nodes]
         self._base, self._swing, self._quartic = (
             Chebyshev.fit(nodes, [getattr(fit, name) for fit in fits], _DEGREE, domain=[least, most])

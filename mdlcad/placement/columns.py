@@ -13,6 +13,7 @@ from ortools.sat.python import cp_model
 
 from mdlcad.placement.lattice import Lattice
 from mdlcad.placement.problem import Problem
+from mdlcad.solver import solver_with
 
 LIMIT = 0.2
 """CP-SAT's deterministic time."""
@@ -76,10 +77,7 @@ def choose_columns(
     for load in loads:
         model.add(load <= most)
     model.minimize(sum(loads) + 2 * most + sum(passed) + sum(away))
-    solver = cp_model.CpSolver()
-    solver.parameters.num_workers = 1
-    solver.parameters.random_seed = seed
-    solver.parameters.max_deterministic_time = LIMIT
+    solver = solver_with(seed, LIMIT)
     if solver.solve(model) not in (cp_model.OPTIMAL, cp_model.FEASIBLE):
         return None
     return tuple(next(c for c, literal in enumerate(row) if solver.boolean_value(literal)) for row in at)

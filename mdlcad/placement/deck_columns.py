@@ -13,6 +13,7 @@ from mdlcad.placement.columns import PASSED
 from mdlcad.placement.decks import Units, network_in, rules_in
 from mdlcad.placement.grid import way
 from mdlcad.placement.lattice import Lattice
+from mdlcad.solver import solver_with
 
 LIMIT = 0.6
 """CP-SAT's deterministic time."""
@@ -74,10 +75,7 @@ def choose_deck_columns(
             costs.append(load)
         costs.append(2 * most)
     model.minimize(sum(costs))
-    solver = cp_model.CpSolver()
-    solver.parameters.num_workers = 1
-    solver.parameters.random_seed = seed
-    solver.parameters.max_deterministic_time = LIMIT
+    solver = solver_with(seed, LIMIT)
     if solver.solve(model) not in (cp_model.OPTIMAL, cp_model.FEASIBLE):
         return None
     return {

@@ -17,6 +17,7 @@ from ortools.sat.python import cp_model
 from mdlcad.mechanics.decks import Deck, plate_in
 from mdlcad.mechanics.rules import LayoutRules
 from mdlcad.network.model import Network
+from mdlcad.solver import solver_with
 
 LIMIT = 3.0
 """CP-SAT's deterministic time for the choice of decks."""
@@ -88,10 +89,7 @@ def _choose(network: Network, most: int, leans: Mapping[str, Lean], seed: int) -
     # of choices with as few crossings, each seed has its own favourite
     tastes = random.Random(seed)
     model.minimize(sum((TASTE + tastes.randrange(TASTE // 4)) * cross for cross in crosses.values()))
-    solver = cp_model.CpSolver()
-    solver.parameters.num_workers = 1
-    solver.parameters.random_seed = seed
-    solver.parameters.max_deterministic_time = LIMIT
+    solver = solver_with(seed, LIMIT)
     if solver.solve(model) not in (cp_model.OPTIMAL, cp_model.FEASIBLE):
         return None
     return {name: Deck.UPPER if solver.boolean_value(literal) else Deck.LOWER for name, literal in upper.items()}

@@ -17,6 +17,7 @@ from ortools.sat.python import cp_model
 from mdlcad.mechanics.rules import LayoutRules
 from mdlcad.placement.grid import RESOLUTION
 from mdlcad.routing.pieces import Channel, Edge, Item, Role, units
+from mdlcad.solver import solver_with
 
 FIRST_LIMIT = 8.0
 BEST_LIMIT = 0.4
@@ -208,15 +209,6 @@ def solve(channel: Channel, rules: LayoutRules, seed: int) -> ChannelRoute | Non
 def in_mm(solved: tuple[list[int], list[int]]) -> ChannelRoute:
     """The route that ``read_route`` found."""
     return ChannelRoute(tuple(round(x * RESOLUTION, 6) for x in solved[0]), tuple(solved[1]))
-
-
-def solver_with(seed: int, limit: float) -> cp_model.CpSolver:
-    """A solver of one worker with that deterministic time."""
-    solver = cp_model.CpSolver()
-    solver.parameters.num_workers = 1
-    solver.parameters.random_seed = seed
-    solver.parameters.max_deterministic_time = limit
-    return solver
 
 
 def read_route(model: ChannelModel, solver: cp_model.CpSolver) -> tuple[list[int], list[int]]:

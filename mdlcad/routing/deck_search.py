@@ -18,7 +18,7 @@ from mdlcad.placement.anneal import HARD
 from mdlcad.placement.deck_columns import choose_deck_columns
 from mdlcad.placement.deck_seats import Slot, place_deck
 from mdlcad.placement.decks import Lean, Units, choose_decks, crossing, network_in, rules_in
-from mdlcad.placement.lattice import Lattice, lattices, make_lattice, place_ports
+from mdlcad.placement.lattice import Lattice, lattices, make_lattice, outline_at, place_ports
 from mdlcad.placement.placement import Placement
 from mdlcad.placement.placer import MOVES_PER_MASS, PlaceResult
 from mdlcad.placement.ports import PortPlace
@@ -120,7 +120,7 @@ class _Search:
         """Both decks at ``scale``, or None."""
         scale = math.floor(scale * 1e4 + 1e-6) / 1e4
         placed = place_ports(self.network, self.ports, scale)
-        outline = tuple((round(x * scale, 6), round(y * scale, 6)) for x, y in self.boundary)
+        outline = outline_at(self.boundary, scale)
         self.jam = Jam(Placement(outline, scale, (), (), (), (), placed, self.seed))
         need = math.ceil(SLACK * len(self.network.masses) / 2)
         choices = lattices(self.boundary, placed, self.rules, scale, need)

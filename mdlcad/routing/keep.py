@@ -25,11 +25,11 @@ from mdlcad.routing.channel import (
     ChannelRoute,
     in_mm,
     read_route,
-    solver_with,
 )
 from mdlcad.routing.layout import EndKind, Layout
 from mdlcad.routing.pieces import Channel, Item, Role, units
 from mdlcad.routing.tab_items import passing_plates
+from mdlcad.solver import solver_with
 
 KEPT = units(20.0)
 """Counts of rung length that a track or a plate may cost to stay as it was."""

@@ -10,7 +10,7 @@ from itertools import pairwise
 from mdlcad.mechanics.rules import LayoutRules
 from mdlcad.network.model import Network
 from mdlcad.placement.grid import RESOLUTION, inside
-from mdlcad.placement.lattice import Lattice, lattices, make_lattice, place_ports
+from mdlcad.placement.lattice import Lattice, lattices, make_lattice, outline_at, place_ports
 from mdlcad.placement.placement import Placement
 from mdlcad.placement.ports import PortPlace
 from mdlcad.routing.driver import STEP, Size
@@ -96,7 +96,7 @@ def _grown(
         return None
     if any(b - a < rules.row_pitch - 1e-6 for a, b in pairwise(earlier.row_y)):
         return None
-    outline = tuple((round(x * scale, 6), round(y * scale, 6)) for x, y in boundary)
+    outline = outline_at(boundary, scale)
     inner = inside(outline, rules)
     if inner.is_empty:
         return None
