@@ -8,7 +8,7 @@ from pathlib import Path
 from mdlcad.characterise.bench import Bench, make_bench
 from mdlcad.datafolder import find_data
 from mdlcad.language import Device, parse_device, read_device
-from mdlcad.mapping.library import Library as ThresholdLibrary
+from mdlcad.mapping.cell_library import Library as ThresholdLibrary
 from mdlcad.mapping.mapper import Effort, map_netlist
 from mdlcad.network.model import Network
 from mdlcad.proof.reference import build_reference

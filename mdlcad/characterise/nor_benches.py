@@ -16,8 +16,8 @@ from mdlcad.characterise.circuits import REFERENCE, reference_device, register_d
 from mdlcad.language import Device
 from mdlcad.mapping.two_phase import TwoPhaseLibrary, map_two_phase
 from mdlcad.mapping.two_phase.build import build_network
+from mdlcad.mapping.two_phase.cell_library import Cell
 from mdlcad.mapping.two_phase.circuit import Circuit, Instance
-from mdlcad.mapping.two_phase.library import Cell
 from mdlcad.mapping.two_phase.timing import Schedule
 from mdlcad.network.model import MassKind
 from mdlcad.proof.behaviour import Bits

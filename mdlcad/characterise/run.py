@@ -27,8 +27,8 @@ from mdlcad.characterise.result import CharacterisationResult, conclude, differe
 from mdlcad.characterise.threshold_benches import GATES, gate_bench, gate_benches, many_targets
 from mdlcad.characterise.window_figure import window_picture
 from mdlcad.mapping import Library, MappingRequest, load_library
+from mdlcad.mapping.cell_library import Library as ThresholdLibrary
 from mdlcad.mapping.characterisation import Choice
-from mdlcad.mapping.library import Library as ThresholdLibrary
 from mdlcad.mapping.two_phase import TwoPhaseLibrary, load_two_phase
 
 RESULT = "characterisation.json"
@@ -62,10 +62,10 @@ def characterise(task: Task, say: Callable[[str], None], progress: Callable[[str
     else:
         result = _of_threshold(task, library, runner, say)
     with matplotlib.style.context("default"):
-        picture = window_picture(result)
+        picture = window_picture(library.name, result)
     task.place.mkdir(parents=True, exist_ok=True)
     write_atomic(task.place / PICTURE, picture)
-    write_atomic(task.place / TABLE, toml_table(result.found, result.library).encode())
+    write_atomic(task.place / TABLE, toml_table(result.found, library.name).encode())
     write_atomic(task.place / RESULT, to_json(result))
     say(f"written to {task.place}: {PICTURE}, {TABLE}, {RESULT}")
     return list(result.differences)

@@ -14,7 +14,7 @@ import numpy as np
 
 from mdlcad.characterise.bench import Bench, Gates, make_bench
 from mdlcad.mapping.build import coupling_of
-from mdlcad.mapping.library import Library
+from mdlcad.mapping.cell_library import Library
 from mdlcad.mapping.threshold import Threshold
 from mdlcad.network.model import Mass, MassKind, Network, PortBit
 from mdlcad.proof.behaviour import Bits
@@ -43,7 +43,7 @@ _HEAVY = 2
 class _Draft:
     """A bench under construction."""
 
-    library: Library
+    cells: Library
     masses: list[tuple[str, MassKind, int, int]] = field(default_factory=list)  # name, kind, phase, bias weight
     springs: list[tuple[str, str, int]] = field(default_factory=list)
     sensors: list[str] = field(default_factory=list)
@@ -60,7 +60,7 @@ class _Draft:
         return name
 
     def network(self, cell: str, watched: tuple[str, ...]) -> Network:
-        library = self.library
+        library = self.cells
         couplings = tuple(coupling_of(library, *spring) for spring in self.springs)
         load = dict.fromkeys((name for name, *_ in self.masses), 0.0)
         for coupling in couplings:

@@ -15,10 +15,10 @@ from mdlcad.scenario.figures.page import FAINT, GOOD, INK, NEGATIVE, ZERO, new_f
 _MAP = LinearSegmentedColormap.from_list("wrong to right", [NEGATIVE, "#f3e6c8", GOOD])
 
 
-def window_picture(result: CharacterisationResult) -> bytes:
-    """PNG of all measurements that there are."""
+def window_picture(name: str, result: CharacterisationResult) -> bytes:
+    """PNG of all measurements that there are of the cell library ``name``."""
     figure = new_figure(13.5, 9.5 if result.loads else 9.0)
-    title = f"cell library {result.library}: own clock period T = {result.period:g}, damping b = {result.damping:g}"
+    title = f"cell library {name}: own clock period T = {result.period:g}, damping b = {result.damping:g}"
     figure.suptitle(title, fontsize=12, color=INK, y=0.94)
     grid = figure.add_gridspec(2, 2, hspace=0.34, wspace=0.26)
     _draw_map(figure.add_subplot(grid[0, 0]), result)

@@ -23,7 +23,7 @@ from mdlcad.parts.store import records_of
 _SETTINGS: dict[str, Callable[[Job], bytes]] = {
     # the name of the program's file goes into its artefact
     "source": lambda job: job.source.name.encode() + b"\0" + job.source.read_bytes() if job.source else b"",
-    "library": lambda job: to_json(job.library),
+    "cells": lambda job: to_json(job.cells),
     "process": lambda job: to_json(job.process),
     "seed": lambda job: to_json(job.seed),
     "kerf_mm": lambda job: to_json(job.kerf_mm),

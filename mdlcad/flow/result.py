@@ -21,7 +21,7 @@ def make_report(
     process = job.process if state.placement is None else process_of(job.process, state.placement)
     return Report(
         design=state.device.name if state.device else "",
-        cells=job.library.name,
+        cells=job.cells.name,
         process=job.process.name,
         seed=job.seed,
         version=version,

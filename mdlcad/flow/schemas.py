@@ -11,7 +11,7 @@ from mdlcad.compare.change import Comparison
 from mdlcad.compare.history import History
 from mdlcad.errors import UsageError
 from mdlcad.language import Device
-from mdlcad.mapping.library import Library
+from mdlcad.mapping.cell_library import Library
 from mdlcad.mapping.two_phase import TwoPhaseLibrary
 from mdlcad.mechanics import Sizing
 from mdlcad.mechanics.compensation import Compensation

@@ -54,7 +54,7 @@ class Job:
     """
 
     source: Path | None
-    library: Library
+    cells: Library
     process: Process
     seed: int
     folder: Path

@@ -68,7 +68,7 @@ def _map(job: Job, state: State, progress: Progress) -> State:
     if like is not None and like.netlist == netlist:
         return replace(state, network=like.network)
     before = None if like is None else like.network
-    return replace(state, network=map_netlist(netlist, job.library, earlier=before))
+    return replace(state, network=map_netlist(netlist, job.cells, earlier=before))
 
 
 def _prove(job: Job, state: State, progress: Progress) -> State:
@@ -322,7 +322,7 @@ STEPS: tuple[Step, ...] = (
         ),
         lambda s: to_json(s.network),
         from_artefact("network", Network),
-        ("library", "like"),
+        ("cells", "like"),
     ),
     Step(
         "proof",

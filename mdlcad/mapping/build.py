@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from mdlcad.mapping.cell_library import Library
 from mdlcad.mapping.discrete import DiscreteNetwork, Signs
-from mdlcad.mapping.library import Library
 from mdlcad.mapping.plan import Key, Plan, PlannedMass, Role
 from mdlcad.mapping.polarity import choose_polarity
 from mdlcad.mapping.threshold import Threshold

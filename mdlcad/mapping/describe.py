@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from mdlcad.mapping.cell_library import Library as ParametronLibrary
 from mdlcad.mapping.characterisation import Characterisation
 from mdlcad.mapping.dispatch import Library
 from mdlcad.mapping.liberty import REGISTER_MASSES, gate_function, gate_name, threshold_gates
-from mdlcad.mapping.library import Library as ParametronLibrary
 from mdlcad.mapping.two_phase import TwoPhaseLibrary
 from mdlcad.network.model import Dynamics
 

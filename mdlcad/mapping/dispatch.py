@@ -8,7 +8,7 @@ import msgspec
 
 from mdlcad.artefact import load
 from mdlcad.errors import UsageError
-from mdlcad.mapping import library as parametron
+from mdlcad.mapping import cell_library as parametron
 from mdlcad.mapping import mapper
 from mdlcad.mapping.liberty import threshold_liberty
 from mdlcad.mapping.request import AS_WRITTEN, MappingRequest

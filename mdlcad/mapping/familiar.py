@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from mdlcad.mapping.library import Library
+from mdlcad.mapping.cell_library import Library
 from mdlcad.mapping.options import Option, OptionGraph
 from mdlcad.mapping.plan import Key, Role
 from mdlcad.mapping.subject import Subject

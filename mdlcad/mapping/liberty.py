@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import combinations
 from string import ascii_uppercase
 
-from mdlcad.mapping.library import Library
+from mdlcad.mapping.cell_library import Library
 from mdlcad.mapping.threshold import MOST_INPUTS, Threshold, threshold_functions
 
 # masses of a register's ring with one set term

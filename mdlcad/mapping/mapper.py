@@ -6,10 +6,10 @@ from dataclasses import dataclass, replace
 
 from mdlcad.mapping.build import build_network, invert, with_ring
 from mdlcad.mapping.candidates import find_candidates
+from mdlcad.mapping.cell_library import Library
 from mdlcad.mapping.cover import best_cover
 from mdlcad.mapping.familiar import strangeness
 from mdlcad.mapping.greedy import plain_taste, search
-from mdlcad.mapping.library import Library
 from mdlcad.mapping.names import name_masses
 from mdlcad.mapping.options import OptionGraph
 from mdlcad.mapping.plan import Plan, Role

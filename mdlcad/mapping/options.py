@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from mdlcad.mapping.candidates import Candidate
-from mdlcad.mapping.library import GatesTable
+from mdlcad.mapping.cell_library import GatesTable
 from mdlcad.mapping.plan import Key, Role
 from mdlcad.mapping.registers import RegisterChoices, SetChoice
 from mdlcad.mapping.subject import FALSE, TRUE, Subject

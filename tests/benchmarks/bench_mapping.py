@@ -18,7 +18,7 @@ from unittest.mock import patch
 from mdlcad.language import read_device
 from mdlcad.mapping import cover, greedy, mapper, selection, subject
 from mdlcad.mapping.build import with_ring
-from mdlcad.mapping.library import Library, load_library
+from mdlcad.mapping.cell_library import Library, load_library
 from mdlcad.mapping.mapper import Effort
 from mdlcad.mapping.options import Option, OptionGraph
 from mdlcad.mapping.plan import Key, PlannedMass, Role

@@ -29,8 +29,8 @@ from mdlcad.characterise.plan import NOR_SWEEP, THRESHOLD_SWEEP
 from mdlcad.characterise.result import CharacterisationResult, conclude, differences, toml_table
 from mdlcad.characterise.threshold_benches import GATES, gate_bench, gate_benches, heavy_targets, many_targets
 from mdlcad.cli import main
+from mdlcad.mapping.cell_library import load_library
 from mdlcad.mapping.characterisation import Characterisation, Choice
-from mdlcad.mapping.library import load_library
 from mdlcad.mapping.two_phase import load_two_phase
 
 

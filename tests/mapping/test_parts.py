@@ -10,7 +10,7 @@ import pytest
 
 from mdlcad.errors import UsageError
 from mdlcad.mapping.candidates import find_candidates
-from mdlcad.mapping.library import load_library
+from mdlcad.mapping.cell_library import load_library
 from mdlcad.mapping.plan import Key, PlannedMass, Role
 from mdlcad.mapping.polarity import choose_polarity
 from mdlcad.mapping.relieve import relieve

@@ -13,7 +13,7 @@ from enum import Enum
 
 import numpy as np
 
-from mdlcad.mapping.library import Library
+from mdlcad.mapping.cell_library import Library
 from mdlcad.network.model import Network
 from mdlcad.proof.behaviour import Behaviour
 from mdlcad.proof.itinerary import Itinerary

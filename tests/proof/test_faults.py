@@ -14,7 +14,7 @@ import pytest
 
 from mdlcad.language import read_device
 from mdlcad.mapping import map_netlist
-from mdlcad.mapping.library import Library, load_library
+from mdlcad.mapping.cell_library import Library, load_library
 from mdlcad.mapping.mapper import Effort
 from mdlcad.network.model import Network
 from mdlcad.proof.behaviour import Behaviour

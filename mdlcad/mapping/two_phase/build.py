@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from mdlcad.mapping.two_phase.cell_library import CellMass, TwoPhaseLibrary
 from mdlcad.mapping.two_phase.circuit import Circuit, Instance
 from mdlcad.mapping.two_phase.clock import TICK, Clock, loop_net, tap_delay
-from mdlcad.mapping.two_phase.library import CellMass, TwoPhaseLibrary
 from mdlcad.mapping.two_phase.timing import Schedule
 from mdlcad.network.model import Coupling, Mass, MassKind, Network, PortBit, Register
 from mdlcad.synthesis.netlist import Netlist

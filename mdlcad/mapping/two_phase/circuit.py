@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from graphlib import TopologicalSorter
 
+from mdlcad.mapping.two_phase.cell_library import Cell, TwoPhaseLibrary
 from mdlcad.mapping.two_phase.clock import TICK, Clock, clock_cells
-from mdlcad.mapping.two_phase.library import Cell, TwoPhaseLibrary
 from mdlcad.mapping.two_phase.logic import Literal, Logic
 from mdlcad.mapping.two_phase.names import Names, name_nodes
 from mdlcad.mapping.two_phase.strain import Pin, Wiring, relieve

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from mdlcad.mapping.two_phase.library import AND_TABLE, TwoPhaseLibrary
+from mdlcad.mapping.two_phase.cell_library import AND_TABLE, TwoPhaseLibrary
 
 TICK = "tick"
 

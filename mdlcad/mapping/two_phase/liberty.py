@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from mdlcad.mapping.two_phase.library import Cell, TwoPhaseLibrary
+from mdlcad.mapping.two_phase.cell_library import Cell, TwoPhaseLibrary
 
 
 def liberty(library: TwoPhaseLibrary) -> str:

@@ -13,8 +13,7 @@ from mdlcad.datafolder import find_data
 from mdlcad.errors import UsageError
 from mdlcad.mapping.characterisation import Characterisation
 from mdlcad.mapping.request import AS_WRITTEN, MappingRequest
-from mdlcad.mapping.two_phase.function import truth_table
-from mdlcad.mapping.two_phase.library import (
+from mdlcad.mapping.two_phase.cell_library import (
     AND_TABLE,
     COPY_TABLE,
     NOR_TABLE,
@@ -26,6 +25,7 @@ from mdlcad.mapping.two_phase.library import (
     Roles,
     TwoPhaseLibrary,
 )
+from mdlcad.mapping.two_phase.function import truth_table
 from mdlcad.network.model import CouplingKind, Dynamics
 
 _PHASES = 2

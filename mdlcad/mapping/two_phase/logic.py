@@ -14,8 +14,8 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from mdlcad.errors import UsageError
+from mdlcad.mapping.two_phase.cell_library import COPY_TABLE, NOT_TABLE, TwoPhaseLibrary
 from mdlcad.mapping.two_phase.liberty import liberty
-from mdlcad.mapping.two_phase.library import COPY_TABLE, NOT_TABLE, TwoPhaseLibrary
 from mdlcad.mapping.two_phase.trees import TreePlanner
 from mdlcad.synthesis.netlist import GateKind, Netlist
 

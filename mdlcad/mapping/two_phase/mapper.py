@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from mdlcad.mapping.two_phase.build import build_network
+from mdlcad.mapping.two_phase.cell_library import TwoPhaseLibrary
 from mdlcad.mapping.two_phase.circuit import CircuitBuilder
 from mdlcad.mapping.two_phase.clock import join_cells, plan_clock
-from mdlcad.mapping.two_phase.library import TwoPhaseLibrary
 from mdlcad.mapping.two_phase.logic import lower
 from mdlcad.mapping.two_phase.timing import find_ways, schedule
 from mdlcad.network.model import Network

@@ -11,8 +11,8 @@ from mdlcad.language import Device, parse_device, read_device
 from mdlcad.mapping.request import MappingRequest
 from mdlcad.mapping.two_phase import TwoPhaseLibrary, load_two_phase
 from mdlcad.mapping.two_phase.build import build_network
+from mdlcad.mapping.two_phase.cell_library import Cell
 from mdlcad.mapping.two_phase.circuit import Circuit, Instance
-from mdlcad.mapping.two_phase.library import Cell
 from mdlcad.mapping.two_phase.timing import Schedule
 from mdlcad.network.model import MassKind, Network
 from mdlcad.synthesis.netlist import Netlist, OutputBit

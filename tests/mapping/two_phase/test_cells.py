@@ -9,7 +9,7 @@ import pytest
 
 from mdlcad.mapping.request import MappingRequest
 from mdlcad.mapping.two_phase import load_two_phase
-from mdlcad.mapping.two_phase.library import TwoPhaseLibrary
+from mdlcad.mapping.two_phase.cell_library import TwoPhaseLibrary
 from mdlcad.network.model import CouplingKind, Network
 from mdlcad.simulation.decode import decode, instants
 from mdlcad.simulation.run import Stimulus, Watch, simulate
