@@ -3,19 +3,18 @@
 What hangs on which side of a hub follows from columns alone, and a hub side has room for one item a rung plate and
 one post. A full annealing of slots hardly ever mends an overfull hub, because several masses would have to change
 columns at once; here a move costs a microsecond, and only that is looked at.
-
-The random source is the annealer's (``anneal._draw``): if that changes, touch this file too, or numba's cache is stale.
 """
 
 from __future__ import annotations
 
 import math
 
-import numba
 import numpy as np
 import numpy.typing as npt
 
-from mdlcad.placement.anneal import HARD, SPAN, _draw
+from mdlcad.compiled import inlined, kernel, part
+from mdlcad.placement.chance import draw
+from mdlcad.placement.costs import HARD, SPAN
 from mdlcad.placement.problem import Floats, Ints, Problem
 
 TRUNK = 0.3
@@ -27,7 +26,7 @@ EDGE = 1
 MOST_NEIGHBOURS = 64
 
 
-@numba.njit(cache=True, error_model="numpy")
+@part
 def _hub(p: Problem, into: Ints, column: Ints, mass: int) -> float:
     """What mass ``mass`` costs where it and its neighbours stand."""
     at, plates = column[mass], int(p.sizes[2])
@@ -66,7 +65,7 @@ def _hub(p: Problem, into: Ints, column: Ints, mass: int) -> float:
     return float(cost + HARD * over + TRUNK * (np.sum(own) + full))
 
 
-@numba.njit(cache=True, error_model="numpy")
+@part
 def _around(p: Problem, into: Ints, mass: int, found: Ints) -> int:
     """List ``mass`` and those it is coupled to, each once."""
     found[0], n = mass, 1
@@ -85,12 +84,12 @@ def _around(p: Problem, into: Ints, mass: int, found: Ints) -> int:
     return n
 
 
-@numba.njit(cache=True, error_model="numpy", forceinline=True)
+@inlined
 def _crowd(held: float, room: float) -> float:
     return max(0.0, held - room) ** 2
 
 
-@numba.njit(cache=True, error_model="numpy")
+@kernel
 def settle_columns(
     p: Problem,
     into: Ints,
@@ -114,9 +113,9 @@ def settle_columns(
         held[column[mass], cell[mass]] += 1
     for move in range(moves):
         heat = hot * (cold / hot) ** (move / moves)
-        mass = int(_draw(random) * len(column))
+        mass = int(draw(random) * len(column))
         old = column[mass]
-        new = old + (1 if _draw(random) < 0.5 else -1)
+        new = old + (1 if draw(random) < 0.5 else -1)
         if new < 0 or new >= len(room):
             continue
         at = cell[mass]
@@ -128,7 +127,7 @@ def settle_columns(
         column[mass] = new
         for k in range(n):
             change += _hub(p, into, column, found[k])
-        if change <= 0 or _draw(random) < math.exp(-change / heat):
+        if change <= 0 or draw(random) < math.exp(-change / heat):
             held[old, at] -= 1
             held[new, at] += 1
         else:

@@ -11,8 +11,9 @@ from scipy.optimize import linear_sum_assignment
 
 from mdlcad.mechanics.rules import LayoutRules
 from mdlcad.network.model import Network
-from mdlcad.placement.anneal import HARD, anneal
+from mdlcad.placement.anneal import anneal
 from mdlcad.placement.columns import choose_columns
+from mdlcad.placement.costs import HARD
 from mdlcad.placement.lattice import Lattice
 from mdlcad.placement.placement import Placement
 from mdlcad.placement.placer import (

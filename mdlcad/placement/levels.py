@@ -13,10 +13,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from mdlcad.placement.chance import random_source
 from mdlcad.placement.crossings import settle_columns
 from mdlcad.placement.lattice import Lattice
 from mdlcad.placement.problem import Ints, Problem
-from mdlcad.placement.state import random_source
 
 STRIP = 4
 """Columns of a strip, about: a strip's levels must not be taller than the strip is wide by far."""

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
+from mdlcad.placement.chance import random_source
 from mdlcad.placement.problem import Floats, Ints, Problem
 
 DEEP = 16
@@ -91,11 +92,3 @@ def start(problem: Problem, slot_of: Ints, seed: int, band: int | None = None) -
         price=np.zeros(2),
     )
     return state, random_source(seed)
-
-
-def random_source(seed: int) -> npt.NDArray[np.uint64]:
-    """The state of a generator; splitmix64 spreads neighbouring seeds apart."""
-    z: Any = (seed * 0x9E3779B97F4A7C15 + 0x9E3779B97F4A7C15) & 0xFFFFFFFFFFFFFFFF
-    z = ((z ^ (z >> 30)) * 0xBF58476D1CE4E5B9) & 0xFFFFFFFFFFFFFFFF
-    z = ((z ^ (z >> 27)) * 0x94D049BB133111EB) & 0xFFFFFFFFFFFFFFFF
-    return np.array([(z ^ (z >> 31)) | 1], np.uint64)

@@ -14,7 +14,7 @@ from mdlcad.errors import Picture, SignoffError
 from mdlcad.mechanics.decks import Deck
 from mdlcad.mechanics.rules import LayoutRules
 from mdlcad.network.model import Network
-from mdlcad.placement.anneal import HARD
+from mdlcad.placement.costs import HARD
 from mdlcad.placement.deck_columns import choose_deck_columns
 from mdlcad.placement.deck_seats import Slot, place_deck
 from mdlcad.placement.decks import Lean, Units, choose_decks, crossing, network_in, rules_in

@@ -13,7 +13,7 @@ from shapely import Polygon
 from mdlcad.errors import Picture, SignoffError
 from mdlcad.mechanics.rules import LayoutRules
 from mdlcad.network.model import Network
-from mdlcad.placement.anneal import HARD
+from mdlcad.placement.costs import HARD
 from mdlcad.placement.lattice import Lattice, lattices, outline_at, place_ports
 from mdlcad.placement.placement import Placement
 from mdlcad.placement.placer import MOVES_PER_MASS, PlaceResult

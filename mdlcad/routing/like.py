@@ -9,7 +9,7 @@ from itertools import product
 
 from mdlcad.mechanics.rules import LayoutRules
 from mdlcad.network.model import Network
-from mdlcad.placement.anneal import HARD
+from mdlcad.placement.costs import HARD
 from mdlcad.placement.keep import PRICES, place_kept
 from mdlcad.placement.placement import PlacedMass, Placement
 from mdlcad.placement.ports import PortPlace

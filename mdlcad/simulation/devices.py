@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mdlcad.simulation.compiled import kernel
+from mdlcad.compiled import kernel
 from mdlcad.simulation.schedule import due_steps, interval_at
 
 Floats = NDArray[np.float64]

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from mdlcad.simulation.compiled import kernel
+from mdlcad.compiled import kernel
 from mdlcad.simulation.plan import Plan
 from mdlcad.simulation.schedule import due_steps, interval_at
 from mdlcad.simulation.simd import larger, loader, store

@@ -11,7 +11,7 @@ from typing import Any
 import numba
 import numpy as np
 
-from mdlcad.simulation.compiled import kernel
+from mdlcad.compiled import kernel
 from mdlcad.simulation.plan import UNROLLED, Plan
 from mdlcad.simulation.schedule import due_steps, interval_at
 from mdlcad.simulation.simd import evens, larger, loader, odds, paired, store

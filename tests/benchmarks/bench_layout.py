@@ -32,7 +32,7 @@ from mdlcad.mapping import load_library, map_netlist
 from mdlcad.mechanics import load_process, size
 from mdlcad.mechanics.rules import LayoutRules
 from mdlcad.network.model import Network
-from mdlcad.placement.anneal import HARD
+from mdlcad.placement.costs import HARD
 from mdlcad.placement.lattice import Lattice, lattices, place_ports
 from mdlcad.placement.placer import place
 from mdlcad.placement.ports import PortPlace

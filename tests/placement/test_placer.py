@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from mdlcad.network.model import Coupling, CouplingKind
-from mdlcad.placement.anneal import HARD, anneal
+from mdlcad.placement.anneal import anneal
+from mdlcad.placement.costs import HARD
 from mdlcad.placement.grid import RESOLUTION, way
 from mdlcad.placement.large import BAND
 from mdlcad.placement.lattice import Lattice, lattices, place_ports

@@ -1,18 +1,17 @@
-"""Compiled inner loops: crossings of straight lines, swaps that only reduce them, and annealing.
-
-All compiled code is in this one file, because numba's cache does not notice a change in another.
-"""
+"""Compiled inner loops: crossings of straight lines, swaps that only reduce them, and annealing."""
 
 from __future__ import annotations
 
 import math
 from typing import Any
 
-import numba
 import numpy as np
 
+from mdlcad.compiled import inlined, kernel, part
+from mdlcad.placement.chance import draw
 
-@numba.njit(cache=True, error_model="numpy", forceinline=True)
+
+@inlined
 def _side(ax: float, ay: float, bx: float, by: float, cx: float, cy: float) -> int:
     """+1, 0 or -1: on which side of the line a-b the point c lies."""
     turn = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
@@ -23,7 +22,7 @@ def _side(ax: float, ay: float, bx: float, by: float, cx: float, cy: float) -> i
     return 0
 
 
-@numba.njit(cache=True, error_model="numpy")
+@part
 def _meet(points: Any, a: int, b: int, c: int, d: int) -> bool:
     """Whether the closed segments a-b and c-d, which share no node, have a point in common."""
     ax, ay, bx, by = points[a, 0], points[a, 1], points[b, 0], points[b, 1]
@@ -38,7 +37,7 @@ def _meet(points: Any, a: int, b: int, c: int, d: int) -> bool:
     return bool(a_side * b_side <= 0)
 
 
-@numba.njit(cache=True, error_model="numpy")
+@kernel
 def count_crossings(points: Any, lines: Any) -> int:
     """Pairs of ``lines`` (int[L, 2]) without a common node that meet, nodes at ``points`` (float[N, 2])."""
     found = 0
@@ -51,7 +50,7 @@ def count_crossings(points: Any, lines: Any) -> int:
     return found
 
 
-@numba.njit(cache=True, error_model="numpy")
+@part
 def _touching(points: Any, lines: Any, at: Any, of: Any, p: int, q: int, mark: Any, stamp: int) -> tuple[int, float]:
     """Crossings and length of all lines at node p or (if not -1) q; ``mark`` (int[L]) is room for stamps."""
     crossings, length = 0, 0.0
@@ -74,7 +73,7 @@ def _touching(points: Any, lines: Any, at: Any, of: Any, p: int, q: int, mark: A
     return crossings, length
 
 
-@numba.njit(cache=True, error_model="numpy")
+@kernel
 def swap_greedily(
     points: Any, lines: Any, at: Any, of: Any, site_of: Any, radius: float, sweeps: int, tests: int
 ) -> int:
@@ -109,7 +108,7 @@ def swap_greedily(
     return tested
 
 
-@numba.njit(cache=True, error_model="numpy", forceinline=True)
+@inlined
 def _exchange(points: Any, p: int, q: int) -> None:
     for k in range(2):
         kept = points[p, k]
@@ -117,18 +116,7 @@ def _exchange(points: Any, p: int, q: int) -> None:
         points[q, k] = kept
 
 
-@numba.njit(cache=True, error_model="numpy", forceinline=True)
-def _random(source: Any) -> float:
-    """A number in [0, 1) from xorshift64*; ``source`` is uint64[1]."""
-    z = source[0]
-    z ^= z >> np.uint64(12)
-    z ^= z << np.uint64(25)
-    z ^= z >> np.uint64(27)
-    source[0] = z
-    return float((z * np.uint64(2685821657736338717)) >> np.uint64(11)) * (1.0 / 9007199254740992.0)
-
-
-@numba.njit(cache=True, error_model="numpy")
+@kernel
 def anneal_straight(
     points: Any,
     sites: Any,
@@ -156,15 +144,15 @@ def anneal_straight(
     stamp, cost, least = 0, 0.0, 0.0
     for move in range(moves):
         heat = hot * (cold / hot) ** (move / moves)
-        p = int(_random(source) * nodes)
-        target = int(_random(source) * len(sites))
+        p = int(draw(source) * nodes)
+        target = int(draw(source) * len(sites))
         degree = at[p + 1] - at[p]
-        if degree > 0 and _random(source) < 0.5:
-            i = of[at[p] + int(_random(source) * degree)]
+        if degree > 0 and draw(source) < 0.5:
+            i = of[at[p] + int(draw(source) * degree)]
             other = lines[i, 0] + lines[i, 1] - p
             # of a few random sites the nearest to that neighbour
             for _ in range(5):
-                rival = int(_random(source) * len(sites))
+                rival = int(draw(source) * len(sites))
                 if math.hypot(sites[rival, 0] - points[other, 0], sites[rival, 1] - points[other, 1]) < math.hypot(
                     sites[target, 0] - points[other, 0], sites[target, 1] - points[other, 1]
                 ):
@@ -181,7 +169,7 @@ def anneal_straight(
         stamp += 1
         now_crossed, now_long = _touching(points, lines, at, of, p, q, mark, stamp)
         change = now_long - long + price * (now_crossed - crossed)
-        if change <= 0.0 or _random(source) < math.exp(-change / heat):
+        if change <= 0.0 or draw(source) < math.exp(-change / heat):
             node_at[home], node_at[target] = q, p
             cost += change
             if cost < least - 1e-9:
@@ -195,7 +183,7 @@ def anneal_straight(
         _sit(points, sites, site_of, node, best[node])
 
 
-@numba.njit(cache=True, error_model="numpy", forceinline=True)
+@inlined
 def _sit(points: Any, sites: Any, site_of: Any, node: int, site: int) -> None:
     site_of[node] = site
     points[node, 0], points[node, 1] = sites[site, 0], sites[site, 1]
