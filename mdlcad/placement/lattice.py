@@ -12,7 +12,7 @@ from mdlcad.errors import UsageError
 from mdlcad.mechanics.rules import LayoutRules
 from mdlcad.network.model import Network
 from mdlcad.placement.grid import RESOLUTION, TabTerminal, inside, terminals
-from mdlcad.placement.placement import PlacedPort
+from mdlcad.placement.placement import PlacedPort, Placement
 from mdlcad.placement.ports import PortPlace
 
 
@@ -52,6 +52,17 @@ def place_ports(network: Network, ports: tuple[PortPlace, ...], scale: float) ->
 def outline_at(boundary: Iterable[tuple[int, int]], scale: float) -> tuple[tuple[float, float], ...]:
     """The corners of a boundary on the program's grid in mm, at ``scale`` mm per grid unit."""
     return tuple((round(x * scale, 6), round(y * scale, 6)) for x, y in boundary)
+
+
+def bare_placement(
+    network: Network, boundary: Iterable[tuple[int, int]], ports: tuple[PortPlace, ...], scale: float, seed: int
+) -> Placement:
+    """Outline and ports at ``scale``, nobody placed.
+
+    Raises:
+        UsageError: as ``place_ports``.
+    """
+    return Placement(outline_at(boundary, scale), scale, (), (), (), (), place_ports(network, ports, scale), seed)
 
 
 def lattices(

@@ -18,7 +18,7 @@ from mdlcad.placement.costs import HARD
 from mdlcad.placement.deck_columns import choose_deck_columns
 from mdlcad.placement.deck_seats import Slot, place_deck
 from mdlcad.placement.decks import Lean, Units, choose_decks, crossing, network_in, rules_in
-from mdlcad.placement.lattice import Lattice, lattices, make_lattice, outline_at, place_ports
+from mdlcad.placement.lattice import Lattice, bare_placement, lattices, make_lattice
 from mdlcad.placement.placement import Placement
 from mdlcad.placement.placer import MOVES_PER_MASS, PlaceResult
 from mdlcad.placement.ports import PortPlace
@@ -119,11 +119,10 @@ class _Search:
     def attempt(self, scale: float, effort: Effort) -> tuple[Placement, Layout] | None:
         """Both decks at ``scale``, or None."""
         scale = math.floor(scale * 1e4 + 1e-6) / 1e4
-        placed = place_ports(self.network, self.ports, scale)
-        outline = outline_at(self.boundary, scale)
-        self.jam = Jam(Placement(outline, scale, (), (), (), (), placed, self.seed))
+        empty = bare_placement(self.network, self.boundary, self.ports, scale, self.seed)
+        self.jam = Jam(empty)
         need = math.ceil(SLACK * len(self.network.masses) / 2)
-        choices = lattices(self.boundary, placed, self.rules, scale, need)
+        choices = lattices(self.boundary, empty.ports, self.rules, scale, need)
         if not choices:
             self.reason = f"no lattice of {need} slots a unit plate fits the boundary: a larger size would help"
             return None

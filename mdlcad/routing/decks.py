@@ -99,29 +99,29 @@ def deck_parts(
     units = units_of(placement)
     if units is None:
         return None
+    own = {deck: network_in(network, units, deck) for deck in Deck}
     return {
         deck: DeckParts(
-            network_in(network, units, deck),
-            _placement_in(network, placement, units, deck),
-            _layout_in(network, layout, deck),
+            own[deck],
+            _placement_in(own[deck], placement, units, deck),
+            _layout_in(own[deck], layout, deck),
             rules_in(rules, network, units, deck),
         )
         for deck in Deck
     }
 
 
-def _placement_in(network: Network, placement: Placement, units: Units, deck: Deck) -> Placement:
-    bare = {mass for mass in crossing(network, units) if units[mass] is not deck}
-    own = {mass for mass, where in units.items() if where is deck}
+def _placement_in(own: Network, placement: Placement, units: Units, deck: Deck) -> Placement:
+    here = {mass.name for mass in own.masses}
     return replace(
         placement,
-        masses=tuple(unit for unit in placement.masses if unit.mass in own or unit.mass in bare),
-        ports=tuple(port for port in placement.ports if port.mass in own),
+        masses=tuple(unit for unit in placement.masses if unit.mass in here),
+        ports=tuple(port for port in placement.ports if units[port.mass] is deck),
     )
 
 
-def _layout_in(network: Network, layout: Layout, deck: Deck) -> Layout:
-    ends = {coupling.name for coupling in network.couplings}
+def _layout_in(own: Network, layout: Layout, deck: Deck) -> Layout:
+    ends = {coupling.name for coupling in own.couplings}
     return replace(
         layout,
         rungs=tuple(item for item in layout.rungs if deck_of_plate(item.plate) is deck),

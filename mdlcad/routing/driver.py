@@ -14,7 +14,7 @@ from mdlcad.errors import Picture, SignoffError
 from mdlcad.mechanics.rules import LayoutRules
 from mdlcad.network.model import Network
 from mdlcad.placement.costs import HARD
-from mdlcad.placement.lattice import Lattice, lattices, outline_at, place_ports
+from mdlcad.placement.lattice import Lattice, bare_placement, lattices
 from mdlcad.placement.placement import Placement
 from mdlcad.placement.placer import MOVES_PER_MASS, PlaceResult
 from mdlcad.placement.placers import ANNEAL, Placer
@@ -208,11 +208,9 @@ class _Search:
     def attempt(self, scale: float, effort: Effort) -> tuple[Placement, Layout] | None:
         """A placement and its layout at ``scale``, or None."""
         scale = math.floor(scale * 1e4 + 1e-6) / 1e4
-        placed = place_ports(self.network, self.ports, scale)
-        outline = outline_at(self.boundary, scale)
-        self.empty = Placement(outline, scale, (), (), (), (), placed, self.seed)
+        self.empty = bare_placement(self.network, self.boundary, self.ports, scale, self.seed)
         need = math.ceil(SLACK * len(self.network.masses))
-        choices = lattices(self.boundary, placed, self.rules, scale, need)
+        choices = lattices(self.boundary, self.empty.ports, self.rules, scale, need)
         if not choices:
             self.reason = f"no lattice of {need} slots fits the boundary: a larger size would help"
             return None

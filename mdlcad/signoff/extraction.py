@@ -20,6 +20,7 @@ from mdlcad.mechanics import Process, Sizing
 from mdlcad.mechanics.fit import Scale, fit_unit
 from mdlcad.mechanics.flexure import signal_matrix
 from mdlcad.mechanics.leaves import LeafKind, trim
+from mdlcad.mechanics.preload import RIGID_CARRIER
 from mdlcad.mechanics.reduced import UnitNumbers
 from mdlcad.mechanics.strains import reach_at
 from mdlcad.mechanics.unit import clock_swing
@@ -147,7 +148,7 @@ class Built:
             self._biases = self._bias_tables()
         except ArithmeticError as error:
             raise SignoffError(f"a flexure as drawn cannot be bent as far as it must: {error}") from error
-        self.friction = self._friction(process.stack.friction)
+        self.friction = self._friction()
         self._shape(network)
 
     def record(self) -> BuiltDevice:
@@ -235,7 +236,7 @@ class Built:
                 rubs[key] = self._mu * post_rub(chain, nominal, self._scale, self._drawn.post_radius) if turns else 0.0
             self.rubs.append(rubs[key])
             # a coupling that is not the network's has no carrier that was ever computed: take that as rigid
-            carrier = min(self._stiff.get(item.name, np.inf), 1e9)
+            carrier = min(self._stiff.get(item.name, RIGID_CARRIER), RIGID_CARRIER)
             rows = []
             for law in known[key]:
                 rows.append(astuple(spring_numbers(law, carrier, self._scale)))
@@ -325,13 +326,13 @@ class Built:
         springs = entries[:, self._entries]
         return Devices(*masses, *springs)
 
-    def _friction(self, mu: float) -> dict[str, Bound]:
+    def _friction(self) -> dict[str, Bound]:
         """Bound of dry friction (Coulomb) over x, by mass, in units of F0.
 
         The weight of what moves with the shuttle, and the pull of a bias leaf where its eye slides on its post. What
         a rocker's post takes depends on both its ends: ``rubs``.
         """
-        found = {}
+        mu, found = self._mu, {}
         for name in self._names:
             lying = mu * self._drawn.weights[name] / self._scale.force
             least, slope, curve = self._slides.get(name, (0.0, 0.0, 0.0))

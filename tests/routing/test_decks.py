@@ -40,6 +40,14 @@ def test_both_decks_are_legal_and_together_hold_every_coupling_once():
     assert len(names) == len(set(names))
 
 
+def test_an_unrealised_coupling_is_that_of_one_deck():
+    network, rules, placement, layout = both()
+    names = [coupling.name for coupling in network.couplings]
+    decks = deck_parts(network, placement, replace(layout, unrealised=tuple((name, "why") for name in names)), rules)
+    assert decks is not None
+    assert sorted(name for part in decks.values() for name, _ in part.layout.unrealised) == sorted(names)
+
+
 def test_a_crossing_net_has_its_unit_in_one_deck_and_a_bare_hub_in_the_other():
     network, _, placement, layout = both()
     units = units_of(placement)
