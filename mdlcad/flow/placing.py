@@ -97,7 +97,9 @@ def best_of(work: Work, first: int, count: int, workers: int, progress: Progress
         SignoffError: no seed leads to a layout; says why of the first.
     """
     seeds = range(first, first + count)
-    outcomes = [try_seed(work, first, progress)] if count == 1 else _side_by_side(work, seeds, workers, progress)
+    outcomes = (
+        [try_seed(work, first, workers, progress)] if count == 1 else _side_by_side(work, seeds, workers, progress)
+    )
     good = [item for item in outcomes if item.result is not None]
     if not good:
         words = outcomes[0].reason
@@ -121,7 +123,7 @@ def best_of(work: Work, first: int, count: int, workers: int, progress: Progress
 def _side_by_side(work: Work, seeds: range, workers: int, progress: Progress) -> list[Outcome]:
     """The outcome of every seed, in their order."""
     if workers == 1:
-        return [try_seed(work, seed, _labelled(seed, seeds, progress)) for seed in seeds]
+        return [try_seed(work, seed, 1, _labelled(seed, seeds, progress)) for seed in seeds]
     # a child that was forked would share the threads of this one's solvers
     with ProcessPoolExecutor(min(workers, len(seeds)), multiprocessing.get_context("spawn")) as pool:
         waiting = [pool.submit(try_seed, work, seed) for seed in seeds]
@@ -140,15 +142,15 @@ def _silent(words: str) -> None:
     """A child has nobody to tell."""
 
 
-def try_seed(work: Work, seed: int, progress: Progress = _silent) -> Outcome:
-    """Place (and route) with one seed."""
+def try_seed(work: Work, seed: int, workers: int = 1, progress: Progress = _silent) -> Outcome:
+    """Place (and route) with one seed; the outcome is the same for any number of ``workers``."""
     if work.parts is None:
         grid = _on_grid(work, seed)
         moved = 0 if work.earlier is None else likeness(work, grid).moved
         return Outcome(seed, grid, (moved, grid.crossings, grid.length))
     sizing, _ = work.parts
     try:
-        found = _device(work, seed, progress)
+        found = _device(work, seed, workers, progress)
     except SignoffError as problem:
         return Outcome(seed, None, (), str(problem), problem.picture)
     findings = check_layout(work.network, found.placement, found.layout, sizing.rules)
@@ -174,7 +176,7 @@ def _on_grid(work: Work, seed: int) -> GridPlacement:
     )
 
 
-def _device(work: Work, seed: int, progress: Progress) -> Placed:
+def _device(work: Work, seed: int, workers: int, progress: Progress) -> Placed:
     assert work.parts is not None
     sizing, process = work.parts
     network, rules = work.network, sizing.rules
@@ -204,7 +206,7 @@ def _device(work: Work, seed: int, progress: Progress) -> Placed:
     def on_two(why: str) -> Placed:
         leaning = leans(network, sizing, two_decks(process))
         placement, layout = place_and_route_decks(
-            network, work.boundary, work.ports, rules, seed, leaning, progress, judge, work.size
+            network, work.boundary, work.ports, rules, seed, leaning, progress, judge, work.size, workers
         )
         return Placed(placement, layout, why)
 
@@ -214,7 +216,9 @@ def _device(work: Work, seed: int, progress: Progress) -> Placed:
         return on_two("asked for")
     try:
         return Placed(
-            *place_and_route(network, work.boundary, work.ports, rules, seed, progress, judge, work.size, work.placer)
+            *place_and_route(
+                network, work.boundary, work.ports, rules, seed, progress, judge, work.size, work.placer, workers
+            )
         )
     except SignoffError as problem:
         if work.placer.name is not PlacerName.PAPER:

@@ -22,6 +22,7 @@ from mdlcad.placement.lattice import Lattice, bare_placement, lattices, make_lat
 from mdlcad.placement.placement import Placement
 from mdlcad.placement.placer import MOVES_PER_MASS, PlaceResult
 from mdlcad.placement.ports import PortPlace
+from mdlcad.routing.ahead import Ahead
 from mdlcad.routing.decks import EMPTY, joined_layout, joined_placement
 from mdlcad.routing.driver import (
     FAR,
@@ -61,6 +62,16 @@ class _Start:
     cost: float
 
 
+@dataclass(frozen=True, slots=True)
+class _Outcome:
+    """What came of a start: both decks, or what was in the way; ``judged`` as in the search."""
+
+    found: tuple[Placement, Layout] | None
+    reason: str = ""
+    jam: Jam | None = None
+    judged: int = 0
+
+
 def place_and_route_decks(
     network: Network,
     boundary: tuple[tuple[int, int], ...],
@@ -71,20 +82,22 @@ def place_and_route_decks(
     progress: Callable[[str], None] | None = None,
     judge: Judge = no_objection,
     size: Size = SMALLEST,
+    workers: int = 1,
 ) -> tuple[Placement, Layout]:
     """Place and route on two unit plates, at the smallest scale that works. Same arguments, same result.
 
     Args:
-        boundary, ports, progress, size: as for ``place_and_route``.
+        boundary, ports, progress, size, workers: as for ``place_and_route``.
         leans: how much every coupling tilts its source's shuttle.
         judge: is shown the placement of the whole device and what is routed of it so far.
 
     Raises:
         SignoffError: no scale that ``size`` allows works; it says what was in the way, and has a picture of that.
     """
-    search = _Search(network, boundary, ports, rules, seed, leans, progress or (lambda line: None), judge)
     least = least_scale(network, boundary, rules) / math.sqrt(2.0)
-    found = smallest(search.attempt, least, boundary, size, lambda: search.judged >= TOO_SOFT)
+    with Ahead(workers) as ahead:
+        search = _Search(network, boundary, ports, rules, seed, leans, progress or (lambda line: None), judge, ahead)
+        found = smallest(search.attempt, least, boundary, size, lambda: search.judged >= TOO_SOFT)
     if found is None:
         where = size.words()
         words = f"could not place and route {network.design} on two unit plates{where and ' '}{where}: {search.reason}"
@@ -109,9 +122,10 @@ class _Search:
         leans: Mapping[str, Lean],
         progress: Callable[[str], None],
         judge: Judge,
+        ahead: Ahead,
     ) -> None:
         self.network, self.boundary, self.ports, self.rules = network, boundary, ports, rules
-        self.seed, self.leans, self.progress, self.judge = seed, leans, progress, judge
+        self.seed, self.leans, self.progress, self.judge, self.ahead = seed, leans, progress, judge, ahead
         self.reason, self.judged = "", 0
         self.jam = Jam(Placement((), 0.0, (), (), (), (), (), seed))
         self._choices: dict[tuple[int, int], dict[str, Deck] | None] = {}
@@ -127,24 +141,36 @@ class _Search:
             self.reason = f"no lattice of {need} slots a unit plate fits the boundary: a larger size would help"
             return None
         self.reason = "no column for every mass: a larger size would help"
-        tried = [self._start(lattice, self.seed + offset) for lattice in choices[:SHAPES] for offset in range(SEEDS)]
-        starts = sorted((start for start in tried if start is not None), key=lambda start: start.cost)
-        for start in starts[: effort.lattices * effort.seeds]:
-            found = self._from(start)
-            if found is not None:
+        seeds = range(self.seed, self.seed + SEEDS)
+        turns = [(lattice, units) for lattice in choices[:SHAPES] for units in self._all_units(lattice, seeds)]
+        tried = [start for _, start in self.ahead.each(turns, self._start) if start is not None]
+        starts = sorted(tried, key=lambda start: start.cost)[: effort.lattices * effort.seeds]
+        worth = [start for i, start in enumerate(starts) if i == 0 or starts[i - 1].cost <= HOPELESS]
+        for _, outcome in self.ahead.each(worth, self._from):
+            if outcome.found is not None:
                 self.progress(f"{scale:.3f} mm per grid unit: routed on two unit plates")
-                return found
-            if start.cost > HOPELESS:
-                break
+                return outcome.found
+            self.judged += outcome.judged
+            self.reason, self.jam = outcome.reason or self.reason, outcome.jam or self.jam
         self.progress(f"{scale:.3f} mm per grid unit: {self.reason}")
         return None
 
-    def _start(self, lattice: Lattice, seed: int) -> _Start | None:
-        """Decks and columns for ``lattice``, and what a short anneal makes of them."""
-        units = self._units(len(lattice.slots), seed)
-        if units is None:
+    def _all_units(self, lattice: Lattice, seeds: range) -> list[tuple[int, dict[str, Deck]]]:
+        """Which unit goes to which deck, for every seed with which that can be had."""
+        found = [(seed, self._units(len(lattice.slots), seed)) for seed in seeds]
+        if any(units is None for _, units in found):
             self.reason = f"two unit plates of {len(lattice.slots)} slots do not hold its units and crossing nets"
-            return None
+        return [(seed, units) for seed, units in found if units is not None]
+
+    def _units(self, slots: int, seed: int) -> dict[str, Deck] | None:
+        key = (slots, seed)
+        if key not in self._choices:
+            self._choices[key] = choose_decks(self.network, slots, self.leans, seed)
+        return self._choices[key]
+
+    def _start(self, turn: tuple[Lattice, tuple[int, dict[str, Deck]]]) -> _Start | None:
+        """Columns for a lattice and a choice of decks, and what a short anneal makes of them."""
+        lattice, (seed, units) = turn
         decks = {deck: self._lattice(lattice, units, deck) for deck in Deck}
         columns = choose_deck_columns(self.network, units, decks, self.rules, seed)
         if columns is None:
@@ -152,12 +178,6 @@ class _Search:
         start = _Start(units, decks, columns, seed, math.inf)
         pair = self._pair(start, Deck.LOWER, {}, seed, SCREEN)
         return None if pair is None else replace(start, cost=sum(result.cost for result in pair.values()))
-
-    def _units(self, slots: int, seed: int) -> dict[str, Deck] | None:
-        key = (slots, seed)
-        if key not in self._choices:
-            self._choices[key] = choose_decks(self.network, slots, self.leans, seed)
-        return self._choices[key]
 
     def _lattice(self, lattice: Lattice, units: Units, deck: Deck) -> Lattice:
         """The lattice with the tabs of one deck only."""
@@ -172,10 +192,10 @@ class _Search:
             self.rules,
         )
 
-    def _from(self, start: _Start) -> tuple[Placement, Layout] | None:
-        """Both decks annealed without a broken rule, crossing nets in one slot, and routed; None if none were found."""
+    def _from(self, start: _Start) -> _Outcome:
+        """Both decks annealed without a broken rule, crossing nets in one slot, and routed; or what is in the way."""
         wanted: dict[str, Slot] = {}
-        best = math.inf
+        last, best, judged = _Outcome(None), math.inf, 0
         for turn in range(TURNS):
             first = (Deck.LOWER, Deck.UPPER)[turn % 2]
             pair = self._pair(start, first, wanted, start.seed + turn, MOVES_PER_MASS)
@@ -183,19 +203,21 @@ class _Search:
                 break
             cost = sum(result.cost for result in pair.values())
             if cost == 0:
-                found = self._routed(start, {deck: result.placement for deck, result in pair.items()})
-                if found is not None:
-                    return found
+                last = self._routed(start, {deck: result.placement for deck, result in pair.items()})
+                judged += last.judged
+                if last.found is not None:
+                    return last
                 best, wanted = 0.0, {}
                 continue
             if cost < best:
                 best = cost
-                self.reason = f"the best placement of both decks: about {max(1, round(best / HARD))} conflicts left"
+                words = f"the best placement of both decks: about {max(1, round(best / HARD))} conflicts left"
+                last = replace(last, reason=words)
             if cost > FAR:
                 break
             # next turn the deck that had to give way goes first, and finds the other's slots dear to leave
             wanted = self._crossing_slots(start, pair[first].placement)
-        return None
+        return replace(last, judged=judged)
 
     def _pair(
         self, start: _Start, first: Deck, wanted: Mapping[str, Slot], seed: int, moves: int
@@ -221,7 +243,7 @@ class _Search:
         across = crossing(self.network, start.units)
         return place_deck(network, start.decks[deck], rules, start.columns, across, wanted, price, seed, moves)
 
-    def _routed(self, start: _Start, placed: Mapping[Deck, Placement]) -> tuple[Placement, Layout] | None:
+    def _routed(self, start: _Start, placed: Mapping[Deck, Placement]) -> _Outcome:
         units, seed = start.units, start.seed
         placement = joined_placement(self.network, units, placed)
         done = dict.fromkeys(Deck, EMPTY)
@@ -236,10 +258,8 @@ class _Search:
             try:
                 done[deck] = route(network, _marked(placed[deck], units), rules, seed, judge)
             except JamError as error:
-                self.reason, self.jam = f"{deck} deck: {error}", error.jam
-                self.judged += error.judged
-                return None
-        return placement, joined_layout(self.network, units, done)
+                return _Outcome(None, f"{deck} deck: {error}", error.jam, error.judged)
+        return _Outcome((placement, joined_layout(self.network, units, done)))
 
 
 def _marked(placement: Placement, units: Units) -> Placement:

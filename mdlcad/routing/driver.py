@@ -14,12 +14,13 @@ from mdlcad.errors import Picture, SignoffError
 from mdlcad.mechanics.rules import LayoutRules
 from mdlcad.network.model import Network
 from mdlcad.placement.costs import HARD
-from mdlcad.placement.lattice import Lattice, bare_placement, lattices
+from mdlcad.placement.lattice import bare_placement, lattices
 from mdlcad.placement.placement import Placement
 from mdlcad.placement.placer import MOVES_PER_MASS, PlaceResult
 from mdlcad.placement.placers import ANNEAL, Placer
 from mdlcad.placement.ports import PortPlace
 from mdlcad.placement.room import Lack, lack_of_room
+from mdlcad.routing.ahead import Ahead
 from mdlcad.routing.jam import Jam, JamError, draw_jam
 from mdlcad.routing.judge import Judge, no_objection
 from mdlcad.routing.layout import Layout
@@ -104,6 +105,7 @@ def place_and_route(
     judge: Judge = no_objection,
     size: Size = SMALLEST,
     placer: Placer = ANNEAL,
+    workers: int = 1,
 ) -> tuple[Placement, Layout]:
     """Place and route at the smallest scale (mm per grid unit) that works. Same arguments, same result.
 
@@ -114,14 +116,16 @@ def place_and_route(
         progress: called with one line for every scale tried.
         judge: what a layout is held to besides its clearances.
         placer: decides who sits where.
+        workers: how many lattices are annealed at once; the result is the same for any number.
 
     Raises:
         SignoffError: no scale that ``size`` allows, up to ``STEP ** MOST_STEPS`` times the least one, works; it says
             what was in the way, and has a picture of that.
     """
-    search = _Search(network, boundary, ports, rules, seed, progress or (lambda line: None), judge, placer)
     least = least_scale(network, boundary, rules)
-    found = smallest(search.attempt, least, boundary, size, lambda: search.judged >= TOO_SOFT)
+    with Ahead(workers) as ahead:
+        search = _Search(network, boundary, ports, rules, seed, progress or (lambda line: None), judge, placer, ahead)
+        found = smallest(search.attempt, least, boundary, size, lambda: search.judged >= TOO_SOFT)
     return found if found is not None else search.give_up(size.words())
 
 
@@ -196,9 +200,10 @@ class _Search:
         progress: Callable[[str], None],
         judge: Judge,
         placer: Placer,
+        ahead: Ahead,
     ) -> None:
         self.network, self.boundary, self.ports, self.judge = network, boundary, ports, judge
-        self.placer = placer
+        self.placer, self.ahead = placer, ahead
         self.rules, self.seed, self.progress = rules, seed, progress
         self.closest: PlaceResult | None = None
         self.reason = ""
@@ -214,27 +219,36 @@ class _Search:
         if not choices:
             self.reason = f"no lattice of {need} slots fits the boundary: a larger size would help"
             return None
-        short = [self._place(lattice, 0, SCREEN) for lattice in choices]
-        screened = sorted((result.cost, index) for index, result in enumerate(short))
-        self._remember(short[screened[0][1]])
-        best = screened[0][0]
-        for cost, index in screened[: effort.lattices]:
-            for offset in range(effort.seeds if cost <= HOPELESS else 0):
-                result = self._place(choices[index], offset, MOVES_PER_MASS)
-                best = min(best, result.cost)
-                self._remember(result)
-                if result.cost > FAR:
-                    break
-                if result.cost > 0:
-                    continue
-                try:
-                    layout = route(self.network, result.placement, self.rules, self.seed + offset, self.judge)
-                except JamError as error:
-                    self.reason = str(error)
-                    self.judged += error.judged
-                    continue
-                self.progress(f"{scale:.3f} mm per grid unit: routed")
-                return result.placement, layout
+
+        def place(what: tuple[int, int, int]) -> PlaceResult:
+            index, offset, moves_per_mass = what
+            return self.placer.on_lattice(self.network, choices[index], self.rules, self.seed + offset, moves_per_mass)
+
+        short = self.ahead.each([(index, 0, SCREEN) for index in range(len(choices))], place)
+        screened = sorted(((index, result) for (index, _, _), result in short), key=lambda item: item[1].cost)
+        self._remember(screened[0][1])
+        best = screened[0][1].cost
+        hopeful = {index for index, result in screened[: effort.lattices] if result.cost <= HOPELESS}
+        turns = [
+            (index, offset, MOVES_PER_MASS)
+            for offset in range(effort.seeds)
+            for index, _ in screened[: effort.lattices]
+        ]
+        for (index, offset, _), result in self.ahead.each(turns, place, lambda turn: turn[0] in hopeful):
+            best = min(best, result.cost)
+            self._remember(result)
+            if result.cost > FAR:
+                hopeful.remove(index)
+            if result.cost > 0:
+                continue
+            try:
+                layout = route(self.network, result.placement, self.rules, self.seed + offset, self.judge)
+            except JamError as error:
+                self.reason = str(error)
+                self.judged += error.judged
+                continue
+            self.progress(f"{scale:.3f} mm per grid unit: routed")
+            return result.placement, layout
         if best > 0:
             words = f"{scale:.3f} mm per grid unit: about {max(1, round(best / HARD))} conflicts left"
             self.reason = f"the best placement at {words}"
@@ -242,9 +256,6 @@ class _Search:
         else:
             self.progress(f"{scale:.3f} mm per grid unit: {self.reason}")
         return None
-
-    def _place(self, lattice: Lattice, offset: int, moves_per_mass: int) -> PlaceResult:
-        return self.placer.on_lattice(self.network, lattice, self.rules, self.seed + offset, moves_per_mass)
 
     def _remember(self, result: PlaceResult) -> None:
         if self.closest is None or result.cost < self.closest.cost:
