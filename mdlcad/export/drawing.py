@@ -13,8 +13,8 @@ from ezdxf import units
 from shapely import Polygon
 
 from mdlcad.errors import SignoffError
-from mdlcad.export.arcs import with_arcs
-from mdlcad.export.solid import plate_section, rings
+from mdlcad.export.solid import plate_section
+from mdlcad.parts.arcs import rings, with_arcs
 from mdlcad.parts.body import Body
 
 _MARGIN_MM = 5.0

@@ -12,6 +12,7 @@ from shapely import MultiPolygon, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from mdlcad.errors import SignoffError
+from mdlcad.parts.arcs import rings
 from mdlcad.parts.body import Body
 
 # Parts are drawn on a grid of a tenth of a micrometre, far below what any process resolves, so that bodies that share
@@ -35,20 +36,6 @@ def plate_section(bodies: Sequence[Body]) -> list[Polygon]:
     """The union of the bodies' sections as cut: disjoint polygons with holes."""
     union = shapely.union_all([body.section for body in bodies], grid_size=GRID_MM)
     return polygons(shapely.normalize(union))
-
-
-def rings(polygon: Polygon) -> list[NDArray[np.float64]]:
-    """Outer ring anticlockwise, then holes clockwise; each (n, 2) in mm without the repeated last point."""
-    oriented = shapely.orient_polygons(polygon) if hasattr(shapely, "orient_polygons") else polygon
-    outline = np.asarray(oriented.exterior.coords)[:-1, :2]
-    holes = [np.asarray(hole.coords)[:-1, :2] for hole in oriented.interiors]
-    return [_turned(outline, anticlockwise=True)] + [_turned(hole, anticlockwise=False) for hole in holes]
-
-
-def _turned(ring: NDArray[np.float64], *, anticlockwise: bool) -> NDArray[np.float64]:
-    x, y = ring[:, 0], ring[:, 1]
-    signed_area = float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
-    return ring if (signed_area > 0) == anticlockwise else ring[::-1]
 
 
 def prism(section: Sequence[Polygon], z_mm: float, thickness_mm: float) -> manifold3d.Manifold:

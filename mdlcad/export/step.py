@@ -10,11 +10,14 @@ from typing import Any
 
 import build123d as b3d
 import numpy as np
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeVertex, BRepBuilderAPI_MakeWire
+from OCP.GC import GC_MakeArcOfCircle
+from OCP.gp import gp_Pnt
 from shapely import Polygon
 
 from mdlcad.errors import SignoffError
-from mdlcad.export.solid import rings
 from mdlcad.export.stepfile import canonical_step
+from mdlcad.parts.arcs import Vertex, middle_of_arc, rings, true_area, with_arcs
 from mdlcad.parts.body import Body
 
 # A fixed stamp: the file's bytes must depend on the device alone.
@@ -26,7 +29,8 @@ VOLUME_TOLERANCE = 1e-6
 def step_assembly(design: str, bodies: Sequence[Body]) -> bytes:
     """The assembly of ``bodies`` as canonical STEP AP214 text, millimetres.
 
-    Bodies are drawn as assembled. Equal sections at different places share one shape.
+    Bodies are drawn as assembled, round holes, eyes and fillets with true arcs. Equal sections at different
+    places share one shape.
 
     Raises:
         SignoffError: a solid's volume is not its section's area times its thickness, or the writer failed.
@@ -53,10 +57,27 @@ def step_assembly(design: str, bodies: Sequence[Body]) -> bytes:
         return canonical_step(path.read_text(encoding="ascii")).encode("ascii")
 
 
+def _wire(outline: Sequence[Vertex]) -> b3d.Wire:
+    """A closed outline of straight edges and true arcs."""
+    maker = BRepBuilderAPI_MakeWire()
+    corners = [BRepBuilderAPI_MakeVertex(gp_Pnt(x, y, 0.0)).Vertex() for x, y, _ in outline]
+    for index, start in enumerate(outline):
+        after = (index + 1) % len(outline)
+        end = outline[after]
+        if start[2]:
+            ends = gp_Pnt(*start[:2], 0.0), gp_Pnt(*end[:2], 0.0)
+            arc = GC_MakeArcOfCircle(ends[0], gp_Pnt(*middle_of_arc(start, end), 0.0), ends[1]).Value()
+            edge = BRepBuilderAPI_MakeEdge(arc, corners[index], corners[after])
+        else:
+            edge = BRepBuilderAPI_MakeEdge(corners[index], corners[after])
+        maker.Add(edge.Edge())
+    return b3d.Wire(maker.Wire())
+
+
 def _prism(name: str, section: Polygon, local: list[Any], thickness_mm: float) -> b3d.Solid:
-    wires = [b3d.Wire.make_polygon([(x, y, 0.0) for x, y in ring], close=True) for ring in local]
+    wires = [_wire(with_arcs(ring)) for ring in local]
     solid = b3d.Solid.extrude(b3d.Face(wires[0], wires[1:]), b3d.Vector(0.0, 0.0, thickness_mm))
-    expected = section.area * thickness_mm
+    expected = true_area(section) * thickness_mm
     if abs(solid.volume - expected) > VOLUME_TOLERANCE * expected:
         raise SignoffError(f"{name}: solid of {solid.volume:.6f} mm3 from a section that gives {expected:.6f} mm3")
     return solid

@@ -17,7 +17,7 @@ import numpy as np
 
 from mdlcad.mechanics.process import Process
 from mdlcad.mechanics.sizing import Sizing
-from mdlcad.mechanics.unit import clock_swing
+from mdlcad.mechanics.unit import clock_swing, flexing_span
 from mdlcad.network.model import Network
 from mdlcad.simulation.decode import instants
 from mdlcad.simulation.drive import with_tick
@@ -120,7 +120,7 @@ def _clock(
     network: Network, sizing: Sizing, process: Process, trace: Floats, turn: Floats
 ) -> tuple[tuple[ClockPlateLoad, ...], Floats]:
     """The plates' loads, and the shaft's torque float[frames, lanes] in N mm."""
-    law, unit = sizing.law, process.unit
+    law, unit, span = sizing.law, process.unit, flexing_span(process).bend
     phases = network.dynamics.phases
     swing = clock_swing(network, law)
     preload = np.array([item.preload for item in sizing.units])
@@ -132,7 +132,7 @@ def _clock(
         angle = turn - 2.0 * math.pi * k / phases
         mine = phase == k
         pushed = preload[None, mine, None] + swing * np.sin(angle)[:, None, None]
-        eased = 2.0 * unit.shape * amplitude[:, mine] ** 2 / unit.span
+        eased = 2.0 * unit.shape * amplitude[:, mine] ** 2 / span
         force = law.axial_stiffness * (pushed - eased).sum(axis=1)
         torque += force * swing * np.cos(angle)[:, None]
         least, most = (float(force.min()), float(force.max())) if mine.any() else (0.0, 0.0)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from mdlcad.mechanics.leaves import strain_allowed
 from mdlcad.mechanics.process import PlateRole, Process
 from mdlcad.mechanics.rules import LayoutRules
 from mdlcad.mechanics.series import SeriesSpring
@@ -64,12 +65,11 @@ def findings_of(
     for mass in network.masses:
         spread = max(abs(other.k1) for other in network.masses) - abs(mass.k1)
         most("gain", f"unit.{mass.name}", spread, 0.0, "clock plates have one stroke: its k1 cannot be smaller")
-    sheet_limit = process.material(process.plates(PlateRole.RUNG)[0]).strain_limit
     for kind, name, leaf in [("coupler", c.coupling, c.leaf) for c in couplers] + [
         ("bias", b.mass, b.leaf) for b in biases
     ]:
         values = {
-            "strain": (leaf.strain, sheet_limit),
+            "strain": (leaf.strain, strain_allowed(leaf.shape.wall, process)),
             "slope": (leaf.slope, link.slope_limit),
             "clearance": (leaf.clearance, link.leg_gap),
             "quartic": (leaf.quartic * process.unit.throw_unit**2 / law.stiffness_unit, link.quartic_limit),

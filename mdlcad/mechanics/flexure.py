@@ -8,13 +8,14 @@ deflection does not stiffen it. Lengths in mm, forces in N.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
 from scipy.optimize import brentq
 
+from mdlcad.mechanics.fillet import Root, Zone, eye_root, flat_root, zones_of
 from mdlcad.mechanics.frame import TURN, Array, Beam, Frame, Solution, X, Y, dof
 
 RIGID = 1e4
@@ -23,12 +24,16 @@ RIGID = 1e4
 
 @dataclass(frozen=True, slots=True)
 class Meander:
-    """A meander as cut: ``legs`` upright legs of ``wall``, ``pitch`` apart, centre line up to +-``amplitude``."""
+    """A meander as cut: ``legs`` upright legs of ``wall``, ``pitch`` apart, centre line up to +-``amplitude``.
+
+    ``fillet`` is the radius of every inner corner, at its ends as at its bends.
+    """
 
     wall: float
     legs: int
     pitch: float
     amplitude: float
+    fillet: float = 0.0
 
     @property
     def length(self) -> float:
@@ -59,10 +64,34 @@ class Sheet:
     depth: float
     strain_limit: float
 
-    def beam(self, start: int, end: int, wall: float, factor: float = 1.0) -> Beam:
-        """A beam of this sheet: E A = E d w, E I = E d w^3 / 12."""
+    def beam(self, start: int, end: int, wall: float, factor: float = 1.0, zones: tuple[Zone, ...] = ()) -> Beam:
+        """A beam of this sheet: E A = E d w, E I = E d w^3 / 12; stiffer in ``zones``."""
         stretch = self.modulus * self.depth * wall * factor
-        return Beam(start, end, stretch, stretch * wall**2 / 12.0)
+        return Beam(start, end, stretch, stretch * wall**2 / 12.0, zones)
+
+    def walls(
+        self,
+        nodes: Sequence[tuple[float, float]],
+        walls: Sequence[float],
+        ends: tuple[Root, Root],
+        bends: Sequence[float],
+    ) -> list[Beam]:
+        """The walls of a meander from node to node.
+
+        Args:
+            ends: the roots of its two ends; bends: radius of the fillet at each node between.
+
+        Raises:
+            ValueError: two of its fillets do not fit between their bends.
+        """
+        beams = []
+        for i, wall in enumerate(walls):
+            # a bend is filleted on its inner side only, and modelled to where the centre lines meet
+            before = ends[0] if i == 0 else flat_root(bends[i - 1], 1, walls[i - 1] / 2.0)
+            after = ends[1] if i == len(walls) - 1 else flat_root(bends[i], 1, walls[i + 1] / 2.0)
+            length = math.dist(nodes[i], nodes[i + 1])
+            beams.append(self.beam(i, i + 1, wall, zones=zones_of(length, wall, before, after)))
+        return beams
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,9 +112,24 @@ class Chain:
 
 def coupler_chain(meander: Meander, sheet: Sheet) -> Chain:
     """A meander between two blocks that do not turn."""
-    nodes = meander.path()
-    beams = [sheet.beam(i, i + 1, meander.wall) for i in range(len(nodes) - 1)]
+    nodes, end = meander.path(), flat_root(meander.fillet, 2)
+    count = len(nodes) - 1
+    beams = sheet.walls(nodes, [meander.wall] * count, (end, end), [meander.fillet] * (count - 1))
     return Chain(Frame(nodes, beams), len(beams), 0, len(nodes) - 1, None, meander.wall)
+
+
+def to_eye(meander: Meander, sheet: Sheet, eye_radius: float) -> list[Beam]:
+    """The walls of a meander from a block to an eye of that outer radius."""
+    path = meander.path()
+    count = len(path) - 1
+    ends = flat_root(meander.fillet, 2), eye_root(meander.fillet, meander.wall, eye_radius)
+    return sheet.walls(path, [meander.wall] * count, ends, [meander.fillet] * (count - 1))
+
+
+def mirrored(beam: Beam, length: float, last: int) -> Beam:
+    """A beam of a chain whose nodes are numbered backwards from ``last``, as it runs in the other half of a rocker."""
+    zones = tuple(zone.reversed(length) for zone in reversed(beam.zones))
+    return replace(beam, start=last - beam.end, end=last - beam.start, zones=zones)
 
 
 def rocker_chain(meander: Meander, sheet: Sheet, eye_radius: float) -> Chain:
@@ -94,7 +138,8 @@ def rocker_chain(meander: Meander, sheet: Sheet, eye_radius: float) -> Chain:
     centre = meander.length + eye_radius
     nodes = [*half, (centre, 0.0), *[(2.0 * centre - x, y) for x, y in reversed(half)]]
     count = len(half)
-    beams = [sheet.beam(i, i + 1, meander.wall) for i in [*range(count - 1), *range(count + 1, 2 * count)]]
+    beams = to_eye(meander, sheet, eye_radius)
+    beams += [mirrored(beam, math.dist(half[beam.start], half[beam.end]), 2 * count) for beam in reversed(beams)]
     rigid = [sheet.beam(count - 1, count, meander.wall, RIGID), sheet.beam(count, count + 1, meander.wall, RIGID)]
     return Chain(Frame(nodes, beams + rigid), len(beams), 0, 2 * count, count, meander.wall)
 
@@ -104,7 +149,7 @@ def bias_chain(meander: Meander, sheet: Sheet, eye_radius: float) -> Chain:
     path = meander.path()
     nodes = [*path, (meander.length + eye_radius, 0.0)]
     count = len(path)
-    beams = [sheet.beam(i, i + 1, meander.wall) for i in range(count - 1)]
+    beams = to_eye(meander, sheet, eye_radius)
     rigid = [sheet.beam(count - 1, count, meander.wall, RIGID)]
     return Chain(Frame(nodes, beams + rigid), len(beams), 0, count, count, meander.wall)
 
@@ -191,7 +236,7 @@ def examine(chain: Chain, solution: Solution) -> Deflection:
     for beam in frame.beams[: chain.flexible]:
         points, turns = frame.deformed(beam, solution, _AT)
         turns = turns + 0.0
-        moment = max(abs(value) for value in frame.end_moments(beam, solution))
+        moment = frame.wall_moment(beam, solution)
         strain = max(strain, moment * chain.wall / (2.0 * beam.bending))
         slope = max(slope, float(np.max(np.abs(turns))))
         ends = frame.nodes[[beam.start, beam.end]]

@@ -13,6 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from mdlcad.mechanics.fillet import Zone, bare_wall, bending_matrix, stretch_factor
+
 Array = NDArray[np.float64]
 
 X, Y, TURN = 0, 1, 2
@@ -25,12 +27,13 @@ def dof(node: int, direction: int) -> int:
 
 @dataclass(frozen=True, slots=True)
 class Beam:
-    """A straight prismatic beam between two nodes: ``axial`` = E A in N, ``bending`` = E I in N mm^2."""
+    """A straight beam between two nodes: ``axial`` = E A in N, ``bending`` = E I in N mm^2; ``zones`` are stiffer."""
 
     start: int
     end: int
     axial: float
     bending: float
+    zones: tuple[Zone, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,8 +132,19 @@ class Frame:
 
     def end_moments(self, beam: Beam, solution: Solution) -> tuple[float, float]:
         """Bending moments at the two ends of a beam, N mm (magnitude and sign of the end forces)."""
-        local = _beam_matrix(self.length(beam), beam) @ self.local(beam, solution)
-        return float(local[2]), float(local[5])
+        length = self.length(beam)
+        _, v0, r0, _, v1, r1 = self.local(beam, solution)
+        a, b, c = bending_matrix(length, beam.zones)
+        first, last = r0 - (v1 - v0) / length, r1 - (v1 - v0) / length
+        stiff = beam.bending / length
+        return float(stiff * (a * first + b * last)), float(stiff * (b * first + c * last))
+
+    def wall_moment(self, beam: Beam, solution: Solution) -> float:
+        """Largest bending moment where a beam is bare wall, N mm: at the ends of its fillets, if it has any."""
+        first, last = self.end_moments(beam, solution)
+        # the moment runs straight from one end to the other
+        places = bare_wall(self.length(beam), beam.zones) or (0.5, 0.5)
+        return max(abs(first - s * (first + last)) for s in places)
 
     def local(self, beam: Beam, solution: Solution) -> Array:
         """End displacements (along, across, turn) x 2 of a beam in its own axes, shape (6,)."""
@@ -155,8 +169,10 @@ class Frame:
         chord = self.nodes[end] - self.nodes[start]
         length = np.hypot(chord[:, 0], chord[:, 1])
         c, s = (chord / length[:, None]).T
-        a = np.array([beam.axial for beam in self.beams]) / length
+        zones = [(float(own), beam.zones) for own, beam in zip(length, self.beams, strict=True)]
+        a = np.array([beam.axial for beam in self.beams]) / length * [stretch_factor(*item) for item in zones]
         b = np.array([beam.bending for beam in self.beams]) / length**3
+        aa, ab, bb = np.array([bending_matrix(*item) for item in zones]).T
         zero = np.zeros_like(a)
         # stretching along (c, s); bending, whose shape is that of a unit displacement across and of two end turns
         along = np.stack([-c, -s, zero, c, s, zero], axis=1)
@@ -165,7 +181,7 @@ class Frame:
         first[:, 2] -= 1.0
         second[:, 5] -= 1.0
         stiff = a[:, None, None] * along[:, :, None] * along[:, None, :]
-        pairs = ((4.0, first, first), (4.0, second, second), (2.0, first, second), (2.0, second, first))
+        pairs = ((aa, first, first), (bb, second, second), (ab, first, second), (ab, second, first))
         for factor, one, other in pairs:
             stiff += (factor * b * length**2)[:, None, None] * one[:, :, None] * other[:, None, :]
         return np.asarray(stiff, dtype=np.float64)
@@ -175,19 +191,3 @@ class Frame:
         turn = np.zeros((6, 6))
         turn[:3, :3] = turn[3:, 3:] = [[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]]
         return turn
-
-
-def _beam_matrix(length: float, beam: Beam) -> Array:
-    a = beam.axial / length
-    b = beam.bending / length**3
-    row = np.zeros((6, 6))
-    row[np.ix_([0, 3], [0, 3])] = [[a, -a], [-a, a]]
-    row[np.ix_([1, 2, 4, 5], [1, 2, 4, 5])] = b * np.array(
-        [
-            [12.0, 6 * length, -12.0, 6 * length],
-            [6 * length, 4 * length**2, -6 * length, 2 * length**2],
-            [-12.0, -6 * length, 12.0, -6 * length],
-            [6 * length, 2 * length**2, -6 * length, 4 * length**2],
-        ]
-    )
-    return row

@@ -16,6 +16,7 @@ from scipy.optimize import brentq
 
 from mdlcad.mechanics import flexure
 from mdlcad.mechanics.beam.large import LargeFrame, Pose
+from mdlcad.mechanics.fillet import notch_factor
 from mdlcad.mechanics.flexure import Chain, Deflection, Meander, Sheet
 from mdlcad.mechanics.frame import X, Y, dof
 from mdlcad.mechanics.process import PlateRole, Process
@@ -90,6 +91,14 @@ def rung_sheet(process: Process) -> Sheet:
     return Sheet(material.modulus, plate.thickness, material.strain_limit)
 
 
+def strain_allowed(wall: float, process: Process) -> float:
+    """What a flexure's strain may be, at its fillets' ends: within them it is higher, and to stay below the peak's."""
+    material, fillet = process.material(process.plates(PlateRole.RUNG)[0]), process.machine.fillet
+    if not fillet:
+        return material.strain_limit
+    return min(material.strain_limit, material.strain_peak / notch_factor(wall, fillet))
+
+
 def chain_of(kind: LeafKind, shape: Meander, process: Process) -> Chain:
     """The frame of a flexure."""
     sheet = rung_sheet(process)
@@ -111,18 +120,21 @@ def size_leaf(
     Of the walls and leg counts of the template, the pitch that gives the stiffness is found by bisection. If none
     keeps all limits, the one that misses the fewest (then the shortest) is returned with their names.
     """
-    link, sheet = process.link, rung_sheet(process)
+    link, sheet, fillet = process.link, rung_sheet(process), process.machine.fillet
     steps = math.floor((link.wall_max - process.machine.min_wall) / link.wall_step + 1e-9)
     best: LeafSize | None = None
     for legs in link.legs:
         for step in range(steps + 1):
             wall = round(process.machine.min_wall + step * link.wall_step, 6)
             amplitude = (law.shuttle_height - wall) / 2.0
-            pitch = flexure.pitch_for(_stiffness(kind, wall, legs, amplitude, process), stiffness, wall, 40.0)
+            tightest = wall + 2.0 * fillet  # the fillets of two neighbouring legs meet
+            pitch = flexure.pitch_for(_stiffness(kind, wall, legs, amplitude, process), stiffness, tightest, 40.0)
             if pitch is None:
                 continue
-            found = _examine(kind, Meander(wall, legs, pitch, amplitude), cases, process, sheet, law)
-            if not found.misses or (found.misses == ("strain",) and found.strain < _HOPELESS * sheet.strain_limit):
+            found = _examine(kind, Meander(wall, legs, pitch, amplitude, fillet), cases, process, sheet, law)
+            if not found.misses or (
+                found.misses == ("strain",) and found.strain < _HOPELESS * strain_allowed(wall, process)
+            ):
                 found = _held_to_strain(found, cases, process, sheet, law)
             if best is None or (len(found.misses), found.reach) < (len(best.misses), best.reach):
                 best = found
@@ -172,10 +184,10 @@ def _held_to_strain(
     if leaf.kind is LeafKind.BIAS:
         turned = replace(leaf.shape, amplitude=-leaf.shape.amplitude)
         ways.append(_examine(leaf.kind, turned, cases, process, sheet, law))
-    held = []
+    held, allowed = [], strain_allowed(leaf.shape.wall, process)
     for way in ways:
         strain = large_strain(way.kind, way.shape, cases, process)
-        misses = [name for name in way.misses if name != "strain"] + ["strain"] * (strain > sheet.strain_limit)
+        misses = [name for name in way.misses if name != "strain"] + ["strain"] * (strain > allowed)
         held.append(replace(way, strain=trim(strain), misses=tuple(misses)))
     return min(held, key=lambda way: (len(way.misses), way.strain))
 
@@ -302,7 +314,9 @@ def _stiffness(kind: LeafKind, wall: float, legs: int, amplitude: float, process
     column = 1 if kind is LeafKind.ROCKER else 0
 
     def at(pitch: float) -> float:
-        matrix = flexure.signal_matrix(chain_of(kind, Meander(wall, legs, pitch, amplitude), process))
+        matrix = flexure.signal_matrix(
+            chain_of(kind, Meander(wall, legs, pitch, amplitude, process.machine.fillet), process)
+        )
         return float(matrix[0, column])
 
     return at
@@ -326,7 +340,7 @@ def _examine(
     stiffening = 2.0 * axial * one.shortening**2  # an estimate, on the safe side
     worst = _worst(seen)
     limits = {
-        "strain": worst.strain <= sheet.strain_limit,
+        "strain": worst.strain <= strain_allowed(shape.wall, process),
         "slope": worst.slope <= link.slope_limit,
         "clearance": worst.clearance >= link.leg_gap,
         "quartic": stiffening <= link.quartic_limit * law.stiffness_unit / process.unit.throw_unit**2,

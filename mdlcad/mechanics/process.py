@@ -44,13 +44,17 @@ class Material:
 
 @dataclass(frozen=True, slots=True)
 class Machine:
-    """What the machine can make, mm; repeatability is the plus-or-minus of a cut edge."""
+    """What the machine can make, mm; repeatability is the plus-or-minus of a cut edge.
+
+    ``fillet`` is the radius of every inner corner of a flexing part; files written before it was known have sharp ones.
+    """
 
     min_wall: float
     min_gap: float
     kerf: float
     repeatability: float
     bed: tuple[float, float]
+    fillet: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -253,7 +257,7 @@ def _faults(process: Process) -> list[tuple[str, str]]:
         if dataclasses.is_dataclass(getattr(process, section.name))
         for entry in dataclasses.fields(getattr(process, section.name))
         if isinstance(value := getattr(getattr(process, section.name), entry.name), float | int)
-        and (value < 0.0 or (value == 0.0 and entry.name != "kerf"))  # a printer has no kerf
+        and (value < 0.0 or (value == 0.0 and entry.name not in ("kerf", "fillet")))  # a printer has no kerf
     ]
     for name, material in process.materials.items():
         for key in ("modulus", "strain_limit", "strain_peak", "density"):
@@ -275,6 +279,11 @@ def _faults(process: Process) -> list[tuple[str, str]]:
         faults.append(("stack.plates", "must be, bottom to top: base, clock(s), unit, trunk, rung(s), cover"))
     if any(not process.plates(role) for role in sorted(_MANY)):
         faults.append(("stack.plates", "needs a clock plate and a rung plate at least"))
+    least, most = process.machine.kerf / 2.0, min(process.machine.min_gap, process.link.leg_gap) / 2.0
+    if process.machine.fillet and not least <= process.machine.fillet <= most + 1e-9:
+        faults.append(
+            ("machine.fillet", f"must be from {least:g} (half the kerf) to {most:g} (two of them in the least gap)")
+        )
     if any(legs < 2 or legs % 2 for legs in process.link.legs) or not process.link.legs:
         faults.append(("link.legs", "must be even numbers, 2 or more (a meander is symmetric about its middle)"))
     if process.unit.series_leaves < 2:

@@ -20,7 +20,7 @@ from mdlcad.mechanics.frame import TURN, Array, Frame, X, Y, dof
 from mdlcad.mechanics.leaves import LeafKind, LeafSize
 from mdlcad.mechanics.process import Process
 from mdlcad.mechanics.series import SeriesSpring, spring_frame
-from mdlcad.mechanics.unit import UnitLaw
+from mdlcad.mechanics.unit import UnitLaw, flexing_span
 
 
 def block_stiffness(process: Process, series: SeriesSpring) -> float:
@@ -38,7 +38,7 @@ class UnitNumbers:
     """What the law of a unit needs: mm, N.
 
     Attributes:
-        beams: a side; span: of each; bending: E I of each, N mm^2.
+        beams: a side; span: of each, as far as it flexes; bending: E I of each, N mm^2.
         axial: stiffness in x of beams and series spring in a row, N/mm; across: of the end block in y, N/mm.
     """
 
@@ -56,11 +56,11 @@ def unit_force(process: Process, law: UnitLaw, series: SeriesSpring, clock: floa
 
 def sized_numbers(process: Process, law: UnitLaw, series: SeriesSpring) -> UnitNumbers:
     """The law's numbers of every unit as sized."""
-    unit = process.unit
+    unit, span = process.unit, flexing_span(process).bend
     return UnitNumbers(
         unit.beams,
-        unit.span,
-        law.beam_stiffness * unit.span**3 / (24.0 * unit.beams),
+        span,
+        law.beam_stiffness * span**3 / (24.0 * unit.beams),
         1.0 / (1.0 / law.beams_axial + 1.0 / series.stiffness),
         block_stiffness(process, series),
     )

@@ -15,6 +15,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from mdlcad.errors import UsageError
+from mdlcad.mechanics.fillet import flat_root, zones_of
 from mdlcad.mechanics.flexure import RIGID, Sheet
 from mdlcad.mechanics.frame import TURN, Beam, Frame, Spring, X, Y, dof
 from mdlcad.mechanics.process import PlateRole, Process
@@ -124,6 +125,7 @@ class SpringPlan:
     Attributes:
         near, far: x of the leaves of a bank and their walls, (x, wall above, wall below) each, outwards.
         stem, truss: widths in y of the stems and of the trusses; height: of the trusses' outer edges.
+        fillet: radius at the leaves' roots.
     """
 
     near: tuple[tuple[float, float, float], ...]
@@ -131,6 +133,7 @@ class SpringPlan:
     stem: float
     truss: float
     height: float
+    fillet: float
 
 
 def spring_plan(process: Process, wall: float, height: float, clear: float) -> SpringPlan:
@@ -140,7 +143,7 @@ def spring_plan(process: Process, wall: float, height: float, clear: float) -> S
     near = [first + i * (wall + gap) for i in range(unit.series_leaves)]
     far = [near[-1] + wall + clear + i * (wall + gap) for i in range(unit.series_leaves)]
     banks = [tuple((x, wall, wall) for x in bank) for bank in (near, far)]
-    return SpringPlan(banks[0], banks[1], unit.series_arm, unit.series_arm, height)
+    return SpringPlan(banks[0], banks[1], unit.series_arm, unit.series_arm, height, process.machine.fillet)
 
 
 def spring_frame(process: Process, wall: float, height: float, clear: float) -> SpringFrame:
@@ -153,13 +156,17 @@ def spring_frame(process: Process, wall: float, height: float, clear: float) -> 
 
 def frame_of(plan: SpringPlan, sheet: Sheet) -> SpringFrame:
     """A folded spring as beams: first the strained ones (``widths``), then those taken as rigid."""
-    truss_y, face, root = plan.height - plan.truss / 2.0, plan.height - plan.truss, plan.stem / 2.0
+    truss_y, face, edge = plan.height - plan.truss / 2.0, plan.height - plan.truss, plan.stem / 2.0
     nodes = [(0.0, 0.0)]
     parts: list[tuple[Beam, float]] = []  # beams that may be strained, with their width
     stiff: list[Beam] = []
     stem = [0]
     tops: dict[float, list[int]] = {1.0: [], -1.0: []}
+    inmost, outmost = (plan.near[0][0], plan.far[-1][0]), (plan.near[-1][0], plan.far[0][0])
     for x, *walls in plan.near + plan.far:
+        # stems end flush with a bank's last leaf, trusses with the spring's: no corner on that side
+        root = flat_root(plan.fillet, 1 if x in outmost else 2)
+        head = flat_root(plan.fillet, 1 if x in inmost else 2)
         centre = len(nodes)
         nodes.append((x, 0.0))
         if x != plan.far[0][0]:
@@ -167,9 +174,10 @@ def frame_of(plan: SpringPlan, sheet: Sheet) -> SpringFrame:
         stem.append(centre)
         for (side, truss), wall in zip(tops.items(), walls, strict=True):
             foot = len(nodes)
-            nodes += [(x, side * root), (x, side * face), (x, side * truss_y)]
+            nodes += [(x, side * edge), (x, side * face), (x, side * truss_y)]
             stiff += [sheet.beam(centre, foot, wall, RIGID), sheet.beam(foot + 1, foot + 2, wall, RIGID)]
-            parts.append((sheet.beam(foot, foot + 1, wall), wall))
+            zones = zones_of(face - edge, wall, root, head)
+            parts.append((sheet.beam(foot, foot + 1, wall, zones=zones), wall))
             if truss:
                 parts.append((sheet.beam(truss[-1], foot + 2, plan.truss), plan.truss))
             truss.append(foot + 2)
@@ -211,7 +219,7 @@ def _solve(process: Process, law: UnitLaw, wall: float, height: float, clear: fl
     solution = frame.solve(dict.fromkeys(pin, 0.0) | {dof(0, X): 1.0})
     strain = 0.0
     for beam, width in zip(made.beams, made.widths, strict=False):  # the rigid ones have no width
-        moment = max(abs(value) for value in frame.end_moments(beam, solution))
+        moment = frame.wall_moment(beam, solution)
         strain = max(strain, moment * width / (2.0 * beam.bending))
     turning = float(frame.condense([dof(0, TURN)], pin)[0, 0])
     return float(solution.reactions[dof(0, X)]), strain, turning

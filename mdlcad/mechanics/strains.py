@@ -15,6 +15,7 @@ from scipy.optimize import brentq
 
 from mdlcad.errors import UsageError
 from mdlcad.mechanics.beam.unit import beam_strains, spring_strains
+from mdlcad.mechanics.fillet import notch_factor
 from mdlcad.mechanics.findings import Finding
 from mdlcad.mechanics.leaves import LeafKind, LeafSize, large_strain
 from mdlcad.mechanics.process import PlateRole, Process
@@ -109,12 +110,26 @@ def check_strain(
     biases: Sequence[BiasSize],
     throw: float,
 ) -> list[Finding]:
-    """Rules ``strain`` and ``strain_peak``: every part's large-displacement strain, computed anew from its size."""
+    """Rules ``strain``, ``strain_root`` and ``strain_peak``, on every part's large-displacement strain, computed anew.
+
+    The strain is that of the bare wall, at the ends of its fillets; within a fillet it is the notch factor higher
+    (``strain_root``), and must be less than what the material bears at a peak.
+    """
     material = process.material(process.plates(PlateRole.UNIT)[0])
-    limit, sheet_limit = material.strain_limit, process.material(process.plates(PlateRole.RUNG)[0]).strain_limit
+    sheet = process.material(process.plates(PlateRole.RUNG)[0])
+    limit, sheet_limit, fillet = material.strain_limit, sheet.strain_limit, process.machine.fillet
     units = unit_strains(network, process, law, series, preloads, peaks)
     values = [("strain", f"unit.{name}", strain, limit, "of its beams") for name, strain in units.beams.items()]
     values.append(("strain", "unit.series", units.settled, limit, "of the series leaves with settled shuttles"))
+    if fillet:
+        beam = notch_factor(process.unit.beam_wall, fillet)
+        values += [
+            ("strain_root", f"unit.{name}", beam * strain, material.strain_peak, "in a fillet of its beams")
+            for name, strain in units.beams.items()
+        ]
+        root = notch_factor(series.wall, fillet) * units.settled
+        words = "in a fillet of the series leaves with settled shuttles"
+        values.append(("strain_root", "unit.series", root, material.strain_peak, words))
     peak = "of the series leaves if a clock peak finds a shuttle held at 0"
     values.append(("strain_peak", "unit.series", units.peak, material.strain_peak, peak))
     known: dict[tuple[LeafSize, float], float] = {}
@@ -124,6 +139,9 @@ def check_strain(
         if (leaf, offset) not in known:
             known[leaf, offset] = large_strain(leaf.kind, leaf.shape, cases_of(leaf.kind, throw, offset), process)
         values.append(("strain", name, known[leaf, offset], sheet_limit, f"of the {leaf.kind.value} at its farthest"))
+        if leaf.shape.fillet:
+            root = notch_factor(leaf.shape.wall, leaf.shape.fillet) * known[leaf, offset]
+            values.append(("strain_root", name, root, sheet.strain_peak, f"in a fillet of the {leaf.kind.value}"))
     return [
         Finding(rule, name, value, most, f"{100 * value:.2f} % strain {words}, {100 * most:.2f} % allowed")
         for rule, name, value, most, words in values

@@ -9,6 +9,7 @@ import math
 from dataclasses import dataclass
 
 from mdlcad.errors import UsageError
+from mdlcad.mechanics.fillet import Root, flat_root, shortening
 from mdlcad.mechanics.process import PlateRole, Process
 from mdlcad.network.model import Network
 
@@ -18,7 +19,7 @@ class UnitLaw:
     """What every unit of the device shares.
 
     Attributes:
-        beam_stiffness: K_b = 2 N E w t^3 / l^3, N/mm.
+        beam_stiffness: K_b = 2 N E w t^3 / l^3, N/mm; l here and below is the flexing span.
         stiffness_unit: S0 = K_b / kappa0, N/mm; force_unit: F0 = S0 X0, N.
         axial_stiffness: K_x = l^2 S0 / (8 g^2 X0^2), N/mm, of the whole unit in x.
         beams_axial: N E w t / (2 l), N/mm: the beams of both sides in series.
@@ -45,27 +46,60 @@ class UnitLaw:
     shuttle_tilt: float
 
 
+@dataclass(frozen=True, slots=True)
+class FlexingSpan:
+    """The span of a unit's beams less what their fillets take from it, mm, the mean of all beams.
+
+    Attributes:
+        bend: as the beams bend in the plane; stretch: as they stretch, or bend out of it.
+    """
+
+    bend: float
+    stretch: float
+
+
+def beam_roots(process: Process, beam: int) -> tuple[Root, Root]:
+    """The roots of a side's beam number ``beam``: at the rib, and at the shuttle or the end block.
+
+    The outermost beams run flush with the edges of shuttle and end block: only their inner sides have a corner there.
+    """
+    fillet, count = process.machine.fillet, process.unit.beams
+    outer = count > 1 and beam in (0, count - 1)
+    return flat_root(fillet, 2), flat_root(fillet, 1 if outer else 2)
+
+
+def flexing_span(process: Process) -> FlexingSpan:
+    """See ``FlexingSpan``; of a unit's two sides, one has a rib and a shuttle, the other a shuttle and an end block."""
+    unit = process.unit
+    bend = stretch = 0.0
+    for beam in range(unit.beams):
+        rib, block = (shortening(unit.beam_wall, root) for root in beam_roots(process, beam))
+        bend += (rib[0] + 3.0 * block[0]) / 2.0
+        stretch += (rib[1] + 3.0 * block[1]) / 2.0
+    return FlexingSpan(unit.span - bend / unit.beams, unit.span - stretch / unit.beams)
+
+
 def unit_law(process: Process) -> UnitLaw:
     """The laws of the unit template.
 
     Raises:
         UsageError: the throw unit X0 is so small that even rigid beam ends are too soft (no series spring exists).
     """
-    unit = process.unit
+    unit, span = process.unit, flexing_span(process)
     plate = process.plates(PlateRole.UNIT)[0]
     modulus, depth = process.material(plate).modulus, plate.thickness
-    beam = unit.beams * modulus * depth * unit.beam_wall**3 / unit.span**3
+    beam = unit.beams * modulus * depth * unit.beam_wall**3 / span.bend**3
     beam_stiffness = 2.0 * beam
     stiffness_unit = beam_stiffness / unit.kappa0
-    axial = unit.span**2 * stiffness_unit / (8.0 * unit.shape**2 * unit.throw_unit**2)
-    beams_axial = unit.beams * modulus * depth * unit.beam_wall / (2.0 * unit.span)
+    axial = span.bend**2 * stiffness_unit / (8.0 * unit.shape**2 * unit.throw_unit**2)
+    beams_axial = unit.beams * modulus * depth * unit.beam_wall / (2.0 * span.stretch)
     if axial >= beams_axial:
-        least = unit.span / unit.shape * math.sqrt(stiffness_unit / (8.0 * beams_axial))
+        least = span.bend / unit.shape * math.sqrt(stiffness_unit / (8.0 * beams_axial))
         raise UsageError(
             f"process {process.name}: unit.throw_unit: {unit.throw_unit} mm leaves no room for a series spring; "
             f"it must be greater than {least:.3f} mm"
         )
-    one_axial = modulus * depth * unit.beam_wall / unit.span
+    one_axial = modulus * depth * unit.beam_wall / span.stretch
     inertia_z = unit.beam_wall * depth**3 / 12.0
     count = 2 * unit.beams
     lever = unit.pair_spacing / 2.0
@@ -79,12 +113,12 @@ def unit_law(process: Process) -> UnitLaw:
         axial_stiffness=axial,
         beams_axial=beams_axial,
         series_stiffness=1.0 / (1.0 / axial - 1.0 / beams_axial),
-        stroke_per_k=2.0 * unit.shape * unit.throw_unit**2 / unit.span,
+        stroke_per_k=2.0 * unit.shape * unit.throw_unit**2 / span.bend,
         wall_per_k=unit.beam_wall / (3.0 * unit.kappa0),
-        clock_force_unit=axial * 2.0 * unit.shape * unit.throw_unit**2 / unit.span,
+        clock_force_unit=axial * 2.0 * unit.shape * unit.throw_unit**2 / span.bend,
         shuttle_height=unit.pair_spacing + unit.beam_wall,
-        shuttle_turn=2.0 * one_axial * spread + count * 4.0 * modulus * depth * unit.beam_wall**3 / 12.0 / unit.span,
-        shuttle_tilt=2.0 * 12.0 * modulus * inertia_z / unit.span**3 * spread,
+        shuttle_turn=2.0 * one_axial * spread + count * 4.0 * modulus * depth * unit.beam_wall**3 / 12.0 / span.bend,
+        shuttle_tilt=2.0 * 12.0 * modulus * inertia_z / span.stretch**3 * spread,
     )
 
 

@@ -22,7 +22,7 @@ from mdlcad.parts.leaf import (
     outward,
     wall_strip,
 )
-from mdlcad.parts.shapes import cut, disc, join, only, square
+from mdlcad.parts.shapes import closed, cut, disc, join, only, square
 from mdlcad.parts.stack import FRAME_REF, Hub, Stack
 from mdlcad.parts.unit import hub_pin_x
 from mdlcad.routing.layout import BiasLeaf
@@ -64,7 +64,7 @@ def bias_bodies(stack: Stack, hub: Hub, leaf: BiasLeaf, size: BiasSize) -> list[
             ]
         )
         pin = square(hub_pin_x(stack, hub, leaf.side), hub.y, rules.pin)
-        return only(cut(whole, [pin, eye(link.post_radius + link.post_fit, at, y)]))
+        return only(cut(closed(whole, shape.fillet), [pin, eye(link.post_radius + link.post_fit, at, y)]))
 
     def covered(path: Path, height: float) -> Polygon:
         near = translate(hub_block(stack, hub, leaf.side), 0.0, height)

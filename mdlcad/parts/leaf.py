@@ -34,6 +34,13 @@ def outward(side: Side) -> float:
     return -1.0 if side is Side.LEFT else 1.0
 
 
+def rung_end(stack: Stack, x: float, y: float, direction: float) -> Polygon:
+    """The end of the rung that a flexure running along +x or -x ends at: what it is filleted against."""
+    half = stack.sizing.rules.bar_width / 2.0
+    low, high = sorted((x, x + direction * stack.sizing.rules.bar_width))
+    return box(low, y - half, high, y + half)
+
+
 def leaf_start(stack: Stack, hub: Hub, side: Side) -> float:
     """x of the outer face of a hub block, where flexures begin."""
     return hub.x + outward(side) * stack.sizing.rules.hub_half

@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 
+import numpy as np
 import shapely
+from numpy.typing import NDArray
 from shapely import Geometry, LineString, MultiPolygon, Polygon
 
 GRID = 1e-4
@@ -69,6 +71,76 @@ def slits(shape: Geometry, beside: Geometry, gap: float) -> list[Polygon]:
     found = pieces(shapely.difference(closed, both, grid_size=GRID))
     # corners leave crumbs of the rounding
     return [piece for piece in found if piece.area > gap * gap / 4.0]
+
+
+_SHARPEST = math.radians(30.0)
+"""Outlines of bent walls turn by less from edge to edge, corners by more."""
+_LEAST_RADIUS = 0.97
+"""Two fillets that share an edge a little too short for both (a bent leaf's root) may be so much less."""
+
+
+def filleted(shape: Polygon, radius: float) -> Polygon:
+    """``shape`` with an arc of ``radius`` in every inner corner of its outline and of its holes.
+
+    Raises:
+        ValueError: two corners are too near to each other for their fillets.
+    """
+    if not radius:
+        return shape
+    # without vertices that are next to none, such as those where a bent leaf leaves its block
+    plain = shape.simplify(10.0 * GRID)
+    # the material on the left of every ring: inner corners turn right
+    outer, *holes = (np.asarray(ring.coords)[:-1] for ring in (plain.exterior, *plain.interiors))
+    rings = [_wound(outer, 1.0), *(_wound(hole, -1.0) for hole in holes)]
+    rounded, *voids = (_rounded(ring, radius) for ring in rings)
+    return only(_snap(Polygon(rounded, voids)))
+
+
+def _wound(ring: NDArray[np.float64], sense: float) -> NDArray[np.float64]:
+    x, y = ring.T
+    return ring if sense * float(x @ np.roll(y, -1) - y @ np.roll(x, -1)) > 0.0 else ring[::-1]
+
+
+def _rounded(ring: NDArray[np.float64], radius: float) -> NDArray[np.float64]:
+    before, after = ring - np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0) - ring
+    along, edge = before / np.hypot(*before.T)[:, None], np.hypot(*after.T)
+    turn = np.arctan2(before[:, 1] * after[:, 0] - before[:, 0] * after[:, 1], (before * after).sum(axis=1))
+    inner = turn > _SHARPEST
+    reach = np.where(inner, radius * np.tan(np.where(inner, turn, 0.0) / 2.0), 0.0)
+    # of an edge, what the fillets at its two ends take, at most all of it
+    share = np.minimum(1.0, edge / np.maximum(reach + np.roll(reach, -1), GRID))
+    share = np.minimum(share, np.roll(share, 1))
+    if np.any(share[inner] < _LEAST_RADIUS):
+        x, y = ring[np.flatnonzero(inner & (share < _LEAST_RADIUS))[0]]
+        raise ValueError(f"no room for a fillet of {radius:g} mm in the corner at ({x:.2f}, {y:.2f})")
+    points: list[NDArray[np.float64]] = []
+    for corner, way, angle, own, length in zip(ring, along, turn, radius * share, reach * share, strict=True):
+        if length == 0.0:
+            points.append(corner[None])
+            continue
+        start, right = corner - length * way, np.array([way[1], -way[0]])
+        steps = max(1, round(angle / ARC_STEP))
+        at = (angle * np.arange(steps + 1) / steps)[:, None]
+        points.append(start + own * (np.sin(at) * way + (1.0 - np.cos(at)) * right))
+    outline = np.round(np.concatenate(points) / GRID) * GRID
+    # where two fillets meet, one ends where the next begins
+    return np.asarray(outline[np.any(outline != np.roll(outline, 1, axis=0), axis=1)])
+
+
+def closed(shape: Geometry, radius: float) -> Polygon:
+    """``shape`` as a tool of ``radius`` leaves it that goes all around it: with arcs in its inner corners.
+
+    Raises:
+        ValueError: a gap of it is so narrow that no such tool gets in.
+    """
+    if not radius:
+        return only(_snap(shape))
+    whole = shape.buffer(radius, join_style="mitre", mitre_limit=10.0).buffer(-radius, quad_segs=_QUARTER)
+    for piece in pieces(shapely.difference(whole, shape)):
+        if piece.area > radius * radius:
+            place = piece.representative_point()
+            raise ValueError(f"a gap at ({place.x:.2f}, {place.y:.2f}) is too narrow for fillets of {radius:g} mm")
+    return only(shapely.union_all([_snap(whole), _snap(shape)], grid_size=GRID))
 
 
 def only(shape: Geometry) -> Polygon:

@@ -13,7 +13,7 @@ from shapely.affinity import translate
 from mdlcad.mechanics.sizes import UnitSize
 from mdlcad.parts import palette
 from mdlcad.parts.body import Body, BodyKind
-from mdlcad.parts.shapes import box, cut, join, only, square, strip
+from mdlcad.parts.shapes import box, cut, filleted, join, only, square, strip
 from mdlcad.parts.stack import FRAME_REF, Hub, Stack, clock_ref
 from mdlcad.routing.layout import Side
 
@@ -35,14 +35,19 @@ def unit_body(stack: Stack, hub: Hub, unit: UnitSize, pinned: Sequence[Side]) ->
     block = box(end, hub.y - high, end + template.block_width, hub.y + high)
     holes = [square(hub_pin_x(stack, hub, side), hub.y, rules.pin) for side in pinned]
 
+    # the rib is the frame's; what is filleted against it is the unit's
+    rib = box(left - template.span - 1.0, hub.y - high - 1.0, left - template.span, hub.y + high + 1.0)
+
     def whole(preload: float) -> Polygon:
-        return only(
-            cut(join([*swaying, block, *drive_parts(stack, hub, preload)]), [*holes, _hole(stack, hub, preload)])
-        )
+        outline = join([*swaying, block, *drive_parts(stack, hub, preload), rib])
+        rounded = filleted(outline, stack.process.machine.fillet)
+        return only(cut(rounded, [rib, *holes, _hole(stack, hub, preload)]))
 
     driven = [block, *drive_parts(stack, hub, unit.preload)]
     envelope = join(
-        [_swept(part, 0.0, rules.throw) for part in swaying] + [_swept(p, rules.clock_throw, 0.0) for p in driven]
+        [_swept(part, 0.0, rules.throw) for part in swaying]
+        + [_swept(p, rules.clock_throw, 0.0) for p in driven]
+        + [whole(unit.preload)]
     )
     return stack.sheet(
         f"unit.{unit.mass}",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from mdlcad.parts.arcs import true_area
 from mdlcad.parts.body import Body
 from mdlcad.signoff.readback import ReadBody
 
@@ -27,7 +28,7 @@ def check_bodies(bodies: Sequence[Body], found: Sequence[ReadBody]) -> list[str]
             continue
         read = copies[0]
         section = body.assembled if body.assembled is not None else body.section
-        volume = section.area * body.thickness
+        volume = true_area(section) * body.thickness
         if abs(read.volume - volume) > VOLUME_TOLERANCE * volume:
             problems.append(f"{body.name}: {read.volume:.6f} mm3 in the STEP file, {volume:.6f} mm3 drawn")
         if max(abs(read.z - body.z), abs(read.thickness - body.thickness)) > 1e-6:

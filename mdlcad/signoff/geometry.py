@@ -24,7 +24,7 @@ from mdlcad.signoff.summary import DesignRules
 from mdlcad.signoff.trapped import check_order
 
 CARRIER_RULES = ("carrier_stiffness", "shuttle_tilt")
-STRAIN_RULES = ("strain", "strain_peak")
+STRAIN_RULES = ("strain", "strain_peak", "strain_root")
 
 
 def check_geometry(
@@ -73,7 +73,7 @@ def check_geometry(
 def _strains(
     network: Network, sizing: Sizing, process: Process, where: dict[str, tuple[float, float]]
 ) -> list[Finding]:
-    """Rules ``strain`` and ``strain_peak``, computed anew from the sizes; what the sizing says of them is not used."""
+    """Rules ``strain``, ``strain_peak`` and ``strain_root``, computed anew, whatever the sizing says."""
     found = check_strain(
         network,
         process,

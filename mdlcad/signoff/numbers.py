@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mdlcad.mechanics.fillet import shortening
 from mdlcad.mechanics.fit import Scale, in_row
 from mdlcad.mechanics.flexure import Chain, Sheet, deflect, signal_matrix
 from mdlcad.mechanics.frame import TURN, Array, X, dof
@@ -18,7 +19,7 @@ from mdlcad.mechanics.leaves import LargeLeaf, LeafKind, higher_terms
 from mdlcad.mechanics.reduced import UnitNumbers
 from mdlcad.mechanics.series import SpringPlan, frame_of, spring_stiffness
 from mdlcad.mechanics.strains import cases_of
-from mdlcad.signoff.measure import BeamSeen, UnitSeen
+from mdlcad.signoff.measure import BeamSeen, UnitSeen, widened
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,19 +64,24 @@ def unit_numbers(seen: UnitSeen, sheet: Sheet, beams: float = 0.0, leaves: float
         beams, leaves: extra thickness, mm.
     """
 
+    def less(beam: BeamSeen) -> tuple[float, float]:
+        taken = [shortening(beam.wall + beams, widened(root, beams)) for root in beam.roots]
+        return sum(bend for bend, _ in taken), sum(stretch for _, stretch in taken)
+
     def bending(side: Sequence[BeamSeen]) -> float:
-        return sum(sheet.modulus * sheet.depth * (beam.wall + beams) ** 3 / beam.span**3 for beam in side)
+        return sum(
+            sheet.modulus * sheet.depth * ((beam.wall + beams) / (beam.span - less(beam)[0])) ** 3 for beam in side
+        )
 
     def stretching(side: Sequence[BeamSeen]) -> float:
-        return sum(sheet.modulus * sheet.depth * (beam.wall + beams) / beam.span for beam in side)
+        return sum(sheet.modulus * sheet.depth * (beam.wall + beams) / (beam.span - less(beam)[1]) for beam in side)
 
     count = len(seen.left)
-    span = float(np.mean([beam.span for beam in (*seen.left, *seen.right)]))
+    span = float(np.mean([beam.span - less(beam)[0] for beam in (*seen.left, *seen.right)]))
     across = bending(seen.left) + bending(seen.right)
     one = across * span**3 / (24.0 * count)
     turn = sum(
-        stretching([beam]) * beam.y**2 + 4.0 * sheet.modulus * sheet.depth * (beam.wall + beams) ** 3 / 12.0 / beam.span
-        for beam in seen.right
+        stretching([beam]) * beam.y**2 + bending([beam]) * (beam.span - less(beam)[0]) ** 2 / 3.0 for beam in seen.right
     )
     plan = seen.plan
     thick = SpringPlan(
@@ -84,6 +90,7 @@ def unit_numbers(seen: UnitSeen, sheet: Sheet, beams: float = 0.0, leaves: float
         plan.stem + leaves,
         plan.truss + leaves,
         plan.height,
+        max(0.0, plan.fillet - leaves / 2.0),
     )
     spring = spring_stiffness(frame_of(thick, sheet), bending(seen.right), turn)
     axial = 1.0 / (1.0 / stretching(seen.left) + 1.0 / stretching(seen.right) + 1.0 / spring.push)

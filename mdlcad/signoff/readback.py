@@ -9,6 +9,9 @@ from typing import Any
 from shapely import Polygon
 
 from mdlcad.errors import UsageError
+from mdlcad.parts.shapes import ARC_STEP
+
+_SAME_MM = 1e-6
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,16 +61,29 @@ def _read_solid(path: Path, name: str, solid: Any) -> ReadBody:
 
 
 def _corners(wire: Any) -> list[tuple[float, float]]:
-    """Corners of a closed wire of straight edges, in the order of the walk."""
-    edges = [
-        ((start.x, start.y), (end.x, end.y)) for start, end in ((edge.startPoint(), edge.endPoint()) for edge in wire)
-    ]
-    corners = []
-    for index, (start, end) in enumerate(edges):
-        after = edges[(index + 1) % len(edges)]
-        # an edge may be stored against the walk: keep the end it shares with the next edge
-        corners.append(end if min(_far(end, after[0]), _far(end, after[1])) < 1e-6 else start)
+    """Corners of a closed wire of straight edges and arcs in the order of the walk, arcs with chords as they are drawn.
+
+    Edges may be stored against the walk: each goes on from where the one before it ended.
+    """
+    paths = [_path(edge) for edge in wire]
+    first, after = paths[0], paths[1]
+    if min(_far(first[-1], after[0]), _far(first[-1], after[-1])) > _SAME_MM:
+        first.reverse()
+    corners: list[tuple[float, float]] = []
+    end = first[0]
+    for path in paths:
+        if _far(path[0], end) > _SAME_MM:
+            path.reverse()
+        corners += path[:-1]
+        end = path[-1]
     return corners
+
+
+def _path(edge: Any) -> list[tuple[float, float]]:
+    """An edge as points: its two ends, or an arc's in steps of what a drawn outline turns by."""
+    steps = 1 if edge.geomType() == "LINE" else max(1, round(edge.Length() / edge.radius() / ARC_STEP))
+    points = [edge.positionAt(step / steps) for step in range(steps + 1)]
+    return [(point.x, point.y) for point in points]
 
 
 def _far(a: tuple[float, float], b: tuple[float, float]) -> float:

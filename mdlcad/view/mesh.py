@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import manifold3d
 import numpy as np
 
-from mdlcad.export.solid import rings
+from mdlcad.parts.arcs import rings
 from mdlcad.parts.body import Body, BodyKind
 from mdlcad.view.built import Built
 from mdlcad.view.motion import Floats, Follow, Follower, Ints

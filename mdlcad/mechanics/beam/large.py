@@ -4,7 +4,7 @@ The element is that of M. A. Crisfield, Non-linear Finite Element Analysis of So
 chapter 7: a linear beam in axes that go with its chord. With chord length l, direction cosines c, s, elongation u and
 end turns a, b against the chord:
 
-    N = E A u / L,   Ma = E I (4 a + 2 b) / L,   Mb = E I (2 a + 4 b) / L,
+    N = E A u / L,   Ma = E I (4 a + 2 b) / L,   Mb = E I (2 a + 4 b) / L,    (other factors where fillets stiffen it)
     forces = B' (N, Ma, Mb),   tangent = B' C B + N z z' / l + (Ma + Mb) (r z' + z r') / l^2.
 
 Long beams are cut into several elements. The motion is driven by prescribed displacements, in steps that are halved
@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import splu
 
+from mdlcad.mechanics.fillet import Zone, bare_wall, bending_matrix, stretch_factor
 from mdlcad.mechanics.frame import Array, Beam, Frame
 
 _ITERATIONS = 25
@@ -53,7 +54,11 @@ class LargeFrame:
                 chain.append(len(nodes))
                 nodes.append(tuple(ends[0] + (ends[1] - ends[0]) * cut / count))
             chain.append(beam.end)
-            elements += [Beam(a, b, beam.axial, beam.bending) for a, b in pairwise(chain)]
+            step = frame.length(beam) / count
+            elements += [
+                Beam(a, b, beam.axial, beam.bending, _part_of(beam.zones, cut * step, (cut + 1) * step))
+                for cut, (a, b) in enumerate(pairwise(chain))
+            ]
             self.part += [index] * count
         self.size = 3 * len(nodes)
         self._springs = frame.springs
@@ -65,6 +70,12 @@ class LargeFrame:
         self._bending = np.array([e.bending for e in elements])
         chord = self._nodes[end] - self._nodes[start]
         self._length = np.hypot(chord[:, 0], chord[:, 1])
+        zones = [(float(length), e.zones) for length, e in zip(self._length, elements, strict=True)]
+        self._stretching = self._axial * [stretch_factor(*item) for item in zones]
+        self._turning = np.array([bending_matrix(*item) for item in zones]).T
+        bare = [bare_wall(*item) for item in zones]
+        self._bare = np.array([item or (0.0, 0.0) for item in bare]).T
+        self._strained = np.array([item is not None for item in bare])
         own = np.array([spring.dof for spring in frame.springs], dtype=np.intp)
         # where the entries of the elements' matrices, and of the springs, belong
         self._row = np.append(np.repeat(self._places, 6, axis=1).ravel(), own)
@@ -101,9 +112,11 @@ class LargeFrame:
         """Largest strain of each beam of the frame, bending and stretching; ``walls`` are their thicknesses."""
         stretch, moments = self._inner(pose.displacements)[:2]
         wall = np.array(walls)[self.part]
-        bending = np.max(np.abs(moments), axis=0) * wall / (2.0 * self._bending)
+        # held where the wall is bare: where fillets make it thicker, the moment weighs less
+        bare = [np.abs(moments[0] - share * (moments[0] + moments[1])) for share in self._bare]
+        bending = np.max(bare, axis=0) * wall / (2.0 * self._bending)
         strain = np.zeros(len(walls))
-        np.maximum.at(strain, self.part, bending + np.abs(stretch) / self._axial)
+        np.maximum.at(strain, self.part, self._strained * (bending + np.abs(stretch) / self._axial))
         return strain
 
     def line(self, pose: Pose) -> list[Array]:
@@ -145,9 +158,10 @@ class LargeFrame:
         # against the chord, whose own turn is known only up to whole turns
         a, b = (end - 2.0 * np.pi * np.round(end / (2.0 * np.pi)) for end in (at[:, 2] - turn, at[:, 5] - turn))
         stiff = self._bending / self._length
+        aa, ab, bb = self._turning
         return (
-            self._axial * elongation / self._length,
-            np.stack([stiff * (4.0 * a + 2.0 * b), stiff * (2.0 * a + 4.0 * b)]),
+            self._stretching * elongation / self._length,
+            np.stack([stiff * (aa * a + ab * b), stiff * (ab * a + bb * b)]),
             length,
             cosine,
             sine,
@@ -167,9 +181,10 @@ class LargeFrame:
         inner = np.stack([stretch, moments[0], moments[1]], axis=1)
         elastic = np.zeros((len(c), 3, 3))
         stiff = self._bending / self._length
-        elastic[:, 0, 0] = self._axial / self._length
-        elastic[:, 1, 1] = elastic[:, 2, 2] = 4.0 * stiff
-        elastic[:, 1, 2] = elastic[:, 2, 1] = 2.0 * stiff
+        elastic[:, 0, 0] = self._stretching / self._length
+        aa, ab, bb = self._turning
+        elastic[:, 1, 1], elastic[:, 2, 2] = aa * stiff, bb * stiff
+        elastic[:, 1, 2] = elastic[:, 2, 1] = ab * stiff
         local = rows.transpose(0, 2, 1) @ (elastic @ rows)
         local += (stretch / length)[:, None, None] * z[:, :, None] * z[:, None, :]
         both = r[:, :, None] * z[:, None, :]
@@ -179,3 +194,9 @@ class LargeFrame:
         for spring in self._springs:
             force[spring.dof] += spring.stiffness * q[spring.dof]
         return force, np.append(local.ravel(), [spring.stiffness for spring in self._springs])
+
+
+def _part_of(zones: Sequence[Zone], low: float, high: float) -> tuple[Zone, ...]:
+    """The zones of a beam between ``low`` and ``high`` mm, counted from there."""
+    cut = [Zone(max(z.start, low) - low, min(z.stop, high) - low, z.bend, z.stretch) for z in zones]
+    return tuple(zone for zone in cut if zone.stop > zone.start)

@@ -10,10 +10,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from mdlcad.mechanics.beam.large import LargeFrame
+from mdlcad.mechanics.fillet import zones_of
 from mdlcad.mechanics.flexure import RIGID, Sheet
 from mdlcad.mechanics.frame import TURN, Frame, X, Y, dof
 from mdlcad.mechanics.process import PlateRole, Process
 from mdlcad.mechanics.series import SeriesSpring, spring_frame
+from mdlcad.mechanics.unit import beam_roots
 
 _CUTS_BEAM = 12
 _CUTS_LEAF = 6
@@ -53,11 +55,16 @@ def unit_model(process: Process, series: SeriesSpring) -> UnitModel:
     hub = len(nodes)
     nodes.append((-half - unit.span - half, 0.0))
     ribs = []
-    for y in heights:
+    for number, y in enumerate(heights):
+        at_rib, at_block = beam_roots(process, number)
         rib, left, right, end = range(len(nodes), len(nodes) + 4)
         x_hub = nodes[hub][0]
         nodes += [(x_hub - half - unit.span, y), (x_hub - half, y), (x_hub + half, y), (-half, y)]
-        flexible += [(sheet.beam(rib, left, wall), wall), (sheet.beam(right, end, wall), wall)]
+        sides = zones_of(unit.span, wall, at_rib, at_block), zones_of(unit.span, wall, at_block, at_block)
+        flexible += [
+            (sheet.beam(a, b, wall, zones=zones), wall)
+            for a, b, zones in ((rib, left, sides[0]), (right, end, sides[1]))
+        ]
         stiff += [sheet.beam(a, b, wall, RIGID) for a, b in ((left, hub), (hub, right), (end, 0))]
         ribs.append(rib)
     beams = [beam for beam, _ in flexible] + stiff

@@ -32,21 +32,28 @@ def forces(frame: Frame, cuts: Sequence[int], prescribed: Mapping[int, float], s
     nodes = [mbs.AddNode(NodeRigidBody2D(referenceCoordinates=[x, y, 0.0])) for x, y in frame.nodes]
     for beam, count in zip(frame.beams, cuts, strict=True):
         start, end = frame.nodes[beam.start], frame.nodes[beam.end]
+        length = frame.length(beam)
+        # a cut wherever a stiffer stretch begins or ends
+        edges = {place for zone in beam.zones for place in (zone.start, zone.stop)}
+        places = sorted({0.0, length, *edges, *(length * cut / count for cut in range(1, count))})
+        places = [a for a, b in pairwise(places) if b - a > 1e-9] + [length]
         chain = [nodes[beam.start]]
-        for cut in range(1, count):
-            x, y = start + (end - start) * cut / count
+        for place in places[1:-1]:
+            x, y = start + (end - start) * place / length
             chain.append(mbs.AddNode(NodeRigidBody2D(referenceCoordinates=[x, y, 0.0])))
         chain.append(nodes[beam.end])
-        for a, b in pairwise(chain):
+        for (a, b), (low, high) in zip(pairwise(chain), pairwise(places), strict=True):
+            zones = [zone for zone in beam.zones if zone.start < (low + high) / 2.0 < zone.stop]
+            bend, stretch = (zones[0].bend, zones[0].stretch) if zones else (1.0, 1.0)
             mbs.AddObject(
                 ObjectBeamGeometricallyExact2D(
                     nodeNumbers=[a, b],
-                    length=frame.length(beam) / count,
+                    length=high - low,
                     massPerLength=1e-9,
                     crossSectionInertia=1e-12,
-                    axialStiffness=beam.axial,
+                    axialStiffness=beam.axial / stretch,
                     shearStiffness=_SHEAR * beam.axial,
-                    bendingStiffness=beam.bending,
+                    bendingStiffness=beam.bending / bend,
                 )
             )
     sensors = {}
