@@ -109,8 +109,22 @@ def _turned(ring: NDArray[np.float64], sense: float) -> NDArray[np.float64]:
 
 def true_area(section: Polygon) -> float:
     """Area, mm2, with true arcs where a section is drawn with chords of them."""
-    area = float(section.area)
+    area = 0.0
     for ring in rings(section):
         vertices = with_arcs(ring)
-        area += sum(arc_area(start, end) for start, end in zip(vertices, vertices[1:] + vertices[:1], strict=True))
+        for start, end in zip(vertices, vertices[1:] + vertices[:1], strict=True):
+            area += (start[0] * end[1] - start[1] * end[0]) / 2.0 + arc_area(start, end)
     return area
+
+
+def arc_length(section: Polygon) -> float:
+    """No less than the length of all arcs of a section's outlines, mm: half a circle is pi / 2 times its chord."""
+    total = 0.0
+    for ring in rings(section):
+        vertices = with_arcs(ring)
+        total += sum(
+            math.dist(start[:2], end[:2]) * (math.pi / 2.0)
+            for start, end in zip(vertices, vertices[1:] + vertices[:1], strict=True)
+            if start[2]
+        )
+    return total
