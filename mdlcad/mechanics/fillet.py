@@ -166,15 +166,18 @@ def notch_factor(wall: float, radius: float) -> float:
 
     Roark's formulas for stress and strain, table 17.1, square shoulder with fillet in a member of rectangular section,
     in-plane bending, for a shoulder as high as the wall on either side (three times the wall in all: a higher one
-    changes little); radii from a twentieth of the wall to ten times.
+    changes little). Radii under a twentieth of the wall are outside of that table: from there on it grows as the stress
+    at a sharp inner corner of a right angle does towards it, with the power 0.4555 (M. L. Williams, J. Appl. Mech. 19
+    (1952)).
     """
     if radius <= 0.0:
         return math.inf
-    ratio = min(max(wall / radius, 0.1), 20.0)
+    ratio = min(max(wall / radius, 0.1), _SHARPEST)
     table = _BLUNT if ratio <= 2.0 else _DEEP
-    share = 2.0 / 3.0
-    return sum((a + b * math.sqrt(ratio) + c * ratio) * share**power for power, (a, b, c) in enumerate(table))
+    factor = sum((a + b * math.sqrt(ratio) + c * ratio) * (2.0 / 3.0) ** power for power, (a, b, c) in enumerate(table))
+    return factor * max(1.0, wall / radius / _SHARPEST) ** 0.4555
 
 
+_SHARPEST = 20.0
 _BLUNT = ((1.007, 1.000, -0.031), (-0.270, -2.404, 0.749), (0.677, 1.133, -0.904), (-0.414, 0.271, 0.186))
 _DEEP = ((1.042, 0.982, -0.036), (-3.599, 1.619, -0.431), (6.084, -5.607, 1.158), (-2.527, 3.006, -0.691))

@@ -9,6 +9,7 @@ from mdlcad.errors import SignoffError
 from mdlcad.export.step import step_assembly
 from mdlcad.export.stepfile import canonical_step
 from mdlcad.parts.arcs import true_area
+from mdlcad.parts.shapes import cut, disc, filleted, join
 from mdlcad.signoff.files import check_bodies
 from mdlcad.signoff.readback import read_step
 from tests.export.bodies import body, few_bodies
@@ -29,10 +30,29 @@ def test_a_second_reader_finds_names_colours_and_volumes(tmp_path):
         assert [value > 0.3 for value in colour] == [value > 0.3 for value in wanted]
 
 
+def test_fillets_and_eyes_are_round_faces(tmp_path):
+    beam = filleted(join([box(0, 0, 2, 6), box(2, 2, 8, 2.5), box(8, 2, 10, 6)]), 0.2)
+    eye = cut(disc(20.0, 5.0, 2.6), [disc(20.0, 5.0, 1.6)])
+    path = tmp_path / "device.step"
+    path.write_bytes(step_assembly("device", [body("beam", beam), body("eye", eye)]))
+    radii = {
+        name.removeprefix("device/"): sorted(
+            round(face._geomAdaptor().Cylinder().Radius(), 3) for face in shape.Faces() if face.geomType() == "CYLINDER"
+        )
+        for shape, name, _, _ in cq.Assembly.importStep(str(path))
+    }
+    assert radii == {"beam": [0.2] * 3, "eye": [1.6, 1.6, 2.6, 2.6]}
+
+
 def test_bodies_read_back_are_the_bodies_written(tmp_path):
     path = tmp_path / "device.step"
     path.write_bytes(step_assembly("device", few_bodies()))
     assert check_bodies(few_bodies(), read_step(path)) == []
+    round_ = [body("eye", cut(disc(20.0, 5.0, 2.6), [disc(20.0, 5.0, 1.6)]))]
+    path.write_bytes(step_assembly("device", round_))
+    (read,) = read_step(path)
+    assert check_bodies(round_, [read]) == []
+    assert len(read.section.exterior.coords) == len(round_[0].section.exterior.coords)
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,8 @@ from mdlcad.errors import SignoffError
 from mdlcad.export.step import step_assembly
 from mdlcad.mechanics.compensation import compensate
 from mdlcad.mechanics.fit import Scale
-from mdlcad.mechanics.leaves import LargeLeaf, LeafKind, chain_of
+from mdlcad.mechanics.flexure import signal_matrix
+from mdlcad.mechanics.leaves import LargeLeaf, LeafKind, chain_of, rung_sheet
 from mdlcad.parts.body import Body
 from mdlcad.parts.stiffness import carrier_stiffnesses
 from mdlcad.signoff.drawn import Drawn, measure_device
@@ -48,15 +49,26 @@ def rewritten(body: Body, section: Polygon, folder) -> ReadBody:
 
 
 def test_every_dimension_is_found(device: Device, built: Built) -> None:
+    fillet = device.process.machine.fillet
     unit, series, preloads = device.process.unit, device.sizing.series, {u.mass: u.preload for u in device.sizing.units}
     for mass, seen in drawn_of(built).units.items():
         for beam in (*seen.left, *seen.right):
             assert (beam.wall, beam.span) == pytest.approx((unit.beam_wall, unit.span), abs=2e-4)
+            # the beams run flush with the outer edges of shuttle and end block, and meet the rib in their middle
+            rib = beam in seen.left
+            assert [root.sides for root in beam.roots] == [2 if rib else 1, 1]
+            assert [root.radius for root in beam.roots] == pytest.approx([fillet] * 2, abs=5e-4)
+        assert seen.plan.fillet == pytest.approx(fillet, abs=2e-3)
         assert seen.preload == pytest.approx(preloads[mass], abs=1e-3)
         for _, *walls in (*seen.plan.near, *seen.plan.far):
             assert walls == pytest.approx([series.wall] * 2, abs=1e-3)
         assert seen.plan.height == pytest.approx(series.height, abs=2e-4)
     leaves = {item.name: item.leaf for item in drawn_of(built).couplers}
+    for item in (*drawn_of(built).couplers, *drawn_of(built).biases):
+        for half in item.leaf.halves:
+            assert half.bends == pytest.approx([fillet] * (len(half.nodes) - 2), abs=5e-4)
+            assert [root.radius for root in half.ends] == pytest.approx([fillet] * 2, abs=2e-3)
+            assert [root.sides for root in half.ends] == [2, 2]
     for size in device.sizing.couplers:
         for half in leaves[size.coupling].halves:
             assert half.walls == pytest.approx([size.leaf.shape.wall] * len(half.walls), abs=2e-4)
@@ -234,3 +246,29 @@ def test_what_is_no_flexure_is_refused(bodies: dict[str, Body]) -> None:
         measure_unit("unit.x", box(0, 0, 10, 10))
     with pytest.raises(SignoffError, match="coupler"):
         measure_leaf("coupler.x", box(0, 0, 10, 4), 0.0, None)
+
+
+def test_a_fillet_left_out_is_found(device: Device, tmp_path) -> None:
+    """Without the fillet at its block a coupler is a little softer; without any, as soft as sharp corners make it."""
+    body = next(body for body in device.bodies() if body.name == "coupler.m0->m3")
+    (hub,) = [place for place in device.placement.masses if place.mass == "m3"]
+    face, row = hub.x - device.sizing.rules.hub_half, hub.y
+    size = device.sizing.couplers[0].leaf
+    wall, fillet = size.shape.wall, size.shape.fillet
+    above, below = (box(face - 0.3, row + y, face, row + y + 0.3) for y in (wall / 2.0, -wall / 2.0 - 0.3))
+
+    def stiffness(section: Polygon) -> tuple[float, tuple[float, float]]:
+        found = rewritten(body, section, tmp_path)
+        leaf = measure_leaf(body.name, found.section, hub.x, None)
+        sheet = rung_sheet(device.process)
+        return float(signal_matrix(chain_of_leaf(leaf, sheet))[0, 0]), tuple(
+            root.radius for root in leaf.halves[0].ends
+        )
+
+    whole, radii = stiffness(body.section)
+    assert radii == pytest.approx((fillet, fillet), abs=5e-4)
+    assert whole == pytest.approx(size.own, rel=5e-4)
+    less, radii = stiffness(body.section.difference(above).difference(below))
+    assert radii == pytest.approx((0.0, fillet), abs=5e-4)
+    sharp = float(signal_matrix(chain_of(LeafKind.COUPLER, replace(size.shape, fillet=0.0), device.process))[0, 0])
+    assert sharp < less < 0.999 * whole
