@@ -12,6 +12,8 @@ from mdlcad.signoff.readback import ReadBody
 VOLUME_TOLERANCE = 1e-6
 # the sum of what two readings of one outline may differ in, over its whole length
 AREA_TOLERANCE_MM2 = 1e-3
+# drawn chords have their ends on the grid, those of an arc read back on the arc, which may be two that meet
+ARC_TOLERANCE_MM = 5.0 * GRID
 
 
 def check_bodies(bodies: Sequence[Body], found: Sequence[ReadBody]) -> list[str]:
@@ -35,8 +37,7 @@ def check_bodies(bodies: Sequence[Body], found: Sequence[ReadBody]) -> list[str]
         if max(abs(read.z - body.z), abs(read.thickness - body.thickness)) > 1e-6:
             problems.append(f"{body.name}: lies at another height in the STEP file than drawn")
         difference = read.section.symmetric_difference(section).area
-        # drawn chords have their ends on the grid, read ones on the arc
-        if difference > AREA_TOLERANCE_MM2 + GRID * arc_length(section):
+        if difference > AREA_TOLERANCE_MM2 + ARC_TOLERANCE_MM * arc_length(section):
             problems.append(
                 f"{body.name}: its outline in the STEP file differs by {difference:.4f} mm2 from that drawn"
             )
