@@ -175,7 +175,7 @@ def notch_factor(wall: float, radius: float) -> float:
     ratio = min(max(wall / radius, 0.1), _SHARPEST)
     table = _BLUNT if ratio <= 2.0 else _DEEP
     factor = sum((a + b * math.sqrt(ratio) + c * ratio) * (2.0 / 3.0) ** power for power, (a, b, c) in enumerate(table))
-    return factor * max(1.0, wall / radius / _SHARPEST) ** 0.4555
+    return factor * math.pow(max(1.0, wall / radius / _SHARPEST), 0.4555)
 
 
 _SHARPEST = 20.0
