@@ -8,7 +8,7 @@ from pathlib import Path
 from mdlcad.artefact import checksum, load
 from mdlcad.errors import UsageError
 from mdlcad.flow.folder import REPORT
-from mdlcad.mapping import Library, recorded_library
+from mdlcad.mapping import Before, Library, recorded_library
 from mdlcad.mapping.two_phase import TwoPhaseLibrary
 from mdlcad.mechanics import Process, Sizing
 from mdlcad.mechanics.rules import LayoutRules
@@ -42,6 +42,14 @@ class EarlierBuild:
     device: Earlier | None
     rules: LayoutRules | None
     grid: GridPlacement | None
+
+    def before(self) -> Before:
+        """Its network, and where on a device with parts the masses stand."""
+        if self.device is None:
+            return Before(self.network)
+        placement = self.device.placement
+        seats = {unit.mass: (unit.column, unit.row) for unit in placement.masses}
+        return Before(self.network, seats, placement.slots)
 
 
 def load_earlier(folder: Path, library: Library, process: Process) -> EarlierBuild:

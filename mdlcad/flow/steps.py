@@ -67,8 +67,8 @@ def _map(job: Job, state: State, progress: Progress) -> State:
     like, netlist = job.like, need(state.netlist)
     if like is not None and like.netlist == netlist:
         return replace(state, network=like.network)
-    before = None if like is None else like.network
-    return replace(state, network=map_netlist(netlist, job.cells, earlier=before))
+    before = None if like is None else like.before()
+    return replace(state, network=map_netlist(netlist, job.cells, before=before))
 
 
 def _prove(job: Job, state: State, progress: Progress) -> State:

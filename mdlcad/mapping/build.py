@@ -113,7 +113,7 @@ def build_network(
         tick=None if tick is None else names[tick],
         cycles_per_tick=plan.cycles,
     )
-    return _power_up(network, library, plan.tick_cycle, _held(netlist, masses, names))
+    return power_up(network, library, plan.tick_cycle, _held(netlist, masses, names))
 
 
 def discrete(network: Network, library: Library) -> DiscreteNetwork:
@@ -154,7 +154,7 @@ def _held(netlist: Netlist, masses: tuple[PlannedMass, ...], names: dict[Key, st
     return held
 
 
-def _power_up(network: Network, library: Library, tick_cycle: int, registers: dict[str, bool]) -> Network:
+def power_up(network: Network, library: Library, tick_cycle: int, registers: dict[str, bool]) -> Network:
     """Displacements at t = 0, when the masses of phase 2 hold their values and all others are about to be set anew.
 
     The ``registers`` hold their initial values, the logic has settled to them with all sensors at 0, and the ring is

@@ -11,6 +11,7 @@ from mdlcad.errors import UsageError
 from mdlcad.mapping import cell_library as parametron
 from mdlcad.mapping import mapper
 from mdlcad.mapping.liberty import threshold_liberty
+from mdlcad.mapping.mend import Before
 from mdlcad.mapping.request import AS_WRITTEN, MappingRequest
 from mdlcad.mapping.two_phase import TwoPhaseLibrary, liberty, load_two_phase, map_two_phase
 from mdlcad.mapping.two_phase.load import library_kind
@@ -60,11 +61,11 @@ def recorded_library(folder: Path) -> Library:
 
 
 def map_netlist(
-    netlist: Netlist, library: Library, effort: mapper.Effort | None = None, earlier: Network | None = None
+    netlist: Netlist, library: Library, effort: mapper.Effort | None = None, before: Before | None = None
 ) -> Network:
     """Map ``netlist`` to masses and springs of ``library``.
 
-    The result is a function of the arguments alone; ``effort`` and ``earlier`` (a network to be like) are for the
+    The result is a function of the arguments alone; ``effort`` and ``before`` (a network to be like) are for the
     parametron mapper alone.
 
     Raises:
@@ -72,7 +73,7 @@ def map_netlist(
     """
     if isinstance(library, TwoPhaseLibrary):
         return map_two_phase(netlist, library)
-    return mapper.map_netlist(netlist, library, effort or mapper.Effort(), earlier)
+    return mapper.map_netlist(netlist, library, effort or mapper.Effort(), before)
 
 
 def liberty_view(library: Library) -> str:

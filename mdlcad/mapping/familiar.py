@@ -11,13 +11,12 @@ That takes truth tables, so in devices of more inputs than have them there is no
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 from mdlcad.mapping.cell_library import Library
 from mdlcad.mapping.options import Option, OptionGraph
 from mdlcad.mapping.plan import Key, Role
 from mdlcad.mapping.subject import Subject
 from mdlcad.mapping.threshold import Threshold
+from mdlcad.mapping.wired import value
 from mdlcad.network.model import Coupling, MassKind, Network
 
 NEW_MASS, NEW_INPUTS = 6, 3
@@ -52,19 +51,6 @@ def _normal(subject: Subject, table: int) -> int:
     return min(table, table ^ subject.full)
 
 
-def _value(subject: Subject, function: Threshold, tables: Sequence[int]) -> int:
-    """Truth table of ``function`` of inputs with those truth tables."""
-    found = 0
-    for minterm in range(1 << len(tables)):
-        total = function.bias + sum(w if minterm >> i & 1 else -w for i, w in enumerate(function.weights))
-        if total > 0:
-            term = subject.full
-            for i, table in enumerate(tables):
-                term &= table if minterm >> i & 1 else table ^ subject.full
-            found |= term
-    return found
-
-
 class _Tables:
     """Functions of the masses that a graph could make."""
 
@@ -88,7 +74,7 @@ class _Tables:
             return load & subject.table(key.of[1])
         if key not in self._done:
             option = self._graph.options[key][0]
-            self._done[key] = _value(subject, option.function, [self.table(source) for source in option.sources])
+            self._done[key] = value(subject.full, option.function, [self.table(source) for source in option.sources])
         return self._done[key]
 
     def sign(self, key: Key, option: Option) -> _Sign:
@@ -96,7 +82,7 @@ class _Tables:
         subject = self._graph.subject
         gated = any(source.role in (Role.TICK, Role.LOAD) for source in option.sources)
         if key.role is Role.HOLD:
-            table = _value(subject, option.function, [self.table(source) for source in option.sources])
+            table = value(subject.full, option.function, [self.table(source) for source in option.sources])
         else:
             table = self.table(key)
         return key.phase, gated, _normal(subject, table)
@@ -129,7 +115,10 @@ class _Earlier:
             self._sources[coupling.target].append(coupling)
         self._bits = {bit.mass: bit.bit for bit in network.sensors}
         self._bits |= {register.mass: register.bit for register in network.registers}
-        self._holds = {f"{register.bit}.hold" for register in network.registers}
+        self._holds = {f"{register.bit}.hold": register.bit for register in network.registers}
+        # a store's twin takes the register's value too
+        taken = [item for item in network.couplings if item.source in self._holds]
+        self._bits |= {item.target: self._holds[item.source] for item in taken}
         self._ring = self._find_ring()
         self._tables: dict[str, int | None] = dict.fromkeys(sorted(self._ring), subject.full)
         self.inputs: dict[_Sign, set[_Inputs]] = {}
@@ -180,7 +169,7 @@ class _Earlier:
             return None
         bias = -round(mass.bias / self._library.bias.force) * mass.polarity
         function = Threshold(tuple(self._weight(item) for item in self._sources[name]), bias)
-        return _value(self._subject, function, known)
+        return value(self._subject.full, function, known)
 
     def _gated(self, name: str) -> bool:
         """Whether a mass has the tick, or the tick under a load, among its inputs."""

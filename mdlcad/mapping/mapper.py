@@ -10,6 +10,7 @@ from mdlcad.mapping.cell_library import Library
 from mdlcad.mapping.cover import best_cover
 from mdlcad.mapping.familiar import strangeness
 from mdlcad.mapping.greedy import plain_taste, search
+from mdlcad.mapping.mend import Before, mended
 from mdlcad.mapping.names import name_masses
 from mdlcad.mapping.options import OptionGraph
 from mdlcad.mapping.plan import Plan, Role
@@ -39,10 +40,9 @@ class Effort:
     options: int = 40_000
 
 
-def map_netlist(
-    netlist: Netlist, library: Library, effort: Effort = Effort(), earlier: Network | None = None
-) -> Network:
-    """Map ``netlist`` to masses and springs of ``library``, preferably to those that an ``earlier`` network had.
+def map_netlist(netlist: Netlist, library: Library, effort: Effort = Effort(), before: Before | None = None) -> Network:
+    """Map ``netlist`` to masses and springs of ``library``: if there is an earlier network, to that with a few masses
+    changed, or else preferably to masses that it had.
 
     The result is a function of the arguments alone.
 
@@ -50,6 +50,11 @@ def map_netlist(
         UsageError: the device needs a fan-out that the library does not allow.
     """
     subject, nets = _make_subject(netlist)
+    if before is not None:
+        same = mended(netlist, library, subject, nets, before)
+        if same is not None:
+            return same
+    earlier = None if before is None else before.network
     plan = _make_plan(netlist, library, subject, nets, effort, earlier)
     masses, tick = with_ring(plan)
     masses = relieve(masses, library.gates.load_limit, library.gates.echo_limit)

@@ -64,15 +64,18 @@ def sites(
         tried = size.pitch or math.floor(scale * STEP**step * 1e4 + 1e-6) / 1e4
         if tried > most:
             return
-        grown = _grown(network, boundary, ports, rules, earlier, layout, tried)
-        if grown is not None and len(grown.lattice.slots) >= need:
-            yield grown
-            if tried == scale:
-                continue
+        grown = [
+            site
+            for site in _grown(network, boundary, ports, rules, earlier, layout, tried)
+            if len(site.lattice.slots) >= need
+        ]
+        yield from grown
+        if grown and tried == scale:
+            continue
         choices = lattices(boundary, place_ports(network, ports, tried), rules, tried, need)
         found = [_shifted(lattice, old, earlier, layout) for lattice in choices]
         found.sort(key=lambda site: _unlike(site, earlier))
-        yield from found[: 1 if grown is not None else 2]
+        yield from found[: 1 if grown else 2]
 
 
 def _unlike(site: Site, earlier: Placement) -> tuple[int, int, int]:
@@ -89,32 +92,42 @@ def _grown(
     earlier: Placement,
     layout: Layout,
     scale: float,
-) -> Site | None:
-    """The columns and rows of the earlier build in the middle of the boundary at ``scale``, with as many more of the
-    same pitch as there is room for; None if they stand too close for today's units."""
+) -> Iterator[Site]:
+    """The columns and rows of the earlier build in the boundary at ``scale``, with as many more of the same pitch as
+    there is room for: in the middle of it, at its lower and at its upper edge. None if they stand too close for today's
+    units.
+
+    From the middle the least of the ports leave their rows; at an edge the outermost row there stays the outermost,
+    from which the tabs of that wall leave, and all the room is in one place.
+    """
     if any(b - a < rules.column_pitch - 1e-6 for a, b in pairwise(earlier.column_x)):
-        return None
+        return
     if any(b - a < rules.row_pitch - 1e-6 for a, b in pairwise(earlier.row_y)):
-        return None
+        return
     outline = outline_at(boundary, scale)
     inner = inside(outline, rules)
     if inner.is_empty:
-        return None
+        return
     x_low, y_low, x_high, y_high = inner.bounds
-    # ports keep their share of a wall, so from the middle of the device the least of them leave their rows
     more = (scale - earlier.mm_per_grid) / 2
     dx = round(more * (min(x for x, _ in boundary) + max(x for x, _ in boundary)) / RESOLUTION) * RESOLUTION
-    dy = more * (min(y for _, y in boundary) + max(y for _, y in boundary))
+    half = rules.row_pitch / 2
     left, column_x = _extended(
         earlier.column_x, rules.column_pitch, dx, x_low + rules.unit_left, x_high - rules.unit_right
     )
-    half = rules.row_pitch / 2
-    below, row_y = _extended(earlier.row_y, rules.row_pitch, dy, y_low + half, y_high - half)
-    lattice = make_lattice(outline, scale, inner, column_x, row_y, place_ports(network, ports, scale), rules)
-    there = set(lattice.slots)
-    slots = {unit.mass: (unit.column + left, unit.row + below) for unit in earlier.masses}
-    moved = replace(layout, trunks=tuple(replace(trunk, x=trunk.x + dx) for trunk in layout.trunks))
-    return Site(lattice, {mass: slot for mass, slot in slots.items() if slot in there}, moved)
+    middle = more * (min(y for _, y in boundary) + max(y for _, y in boundary))
+    edges = (y_low + half - earlier.row_y[0], y_high - half - earlier.row_y[-1])
+    done: set[tuple[int, int]] = set()
+    for dy in (middle, *edges) if scale > earlier.mm_per_grid else (middle,):
+        below, row_y = _extended(earlier.row_y, rules.row_pitch, dy, y_low + half, y_high - half)
+        if (below, len(row_y)) in done:
+            continue
+        done.add((below, len(row_y)))
+        lattice = make_lattice(outline, scale, inner, column_x, row_y, place_ports(network, ports, scale), rules)
+        there = set(lattice.slots)
+        slots = {unit.mass: (unit.column + left, unit.row + below) for unit in earlier.masses}
+        moved = replace(layout, trunks=tuple(replace(trunk, x=trunk.x + dx) for trunk in layout.trunks))
+        yield Site(lattice, {mass: slot for mass, slot in slots.items() if slot in there}, moved)
 
 
 def _extended(

@@ -23,7 +23,15 @@ def test_the_earlier_lattice_first_then_ones_that_hold_it_at_its_own_pitch() -> 
     scales = [site.lattice.mm_per_grid for site in others]
     assert scales == sorted(scales) and scales[-1] > SCALE * STEP ** (MOST_LARGER - 0.1)
     held = [site for site in others if site.layout.trunks]
-    assert len(held) == MOST_LARGER  # one a scale; the rest have channels of another width
+    # one to three a scale (the old rows in the middle, lowest or highest); the rest have channels of another width
+    assert len({site.lattice.mm_per_grid for site in held}) == MOST_LARGER
+    stand = {
+        (site.lattice.mm_per_grid, min(row for _, row in site.slots.values()), site.lattice.row_y) for site in held
+    }
+    assert len(stand) == len(held)
+    roomy = [site for site in held if site.lattice.mm_per_grid == scales[-1]]
+    lowest = [min(row for _, row in site.slots.values()) for site in roomy]
+    assert len(roomy) == 3 and min(lowest) == min(row for _, row in first.slots.values())
     for site in held:
         # all masses stand as they stood among each other, in mm too, and the trunk stood by them
         across = [site.lattice.column_x[site.slots[unit.mass][0]] - unit.x for unit in earlier.masses]
