@@ -23,6 +23,7 @@ from mdlcad.mechanics.compensation import COMPENSATION_FILE, Compensation, compe
 from mdlcad.mechanics.drive import DriveLoads, drive_loads
 from mdlcad.network.model import CouplingKind, Network
 from mdlcad.parts import build_parts
+from mdlcad.parts.clock import clock_seats
 from mdlcad.parts.stiffness import CarrierStiffness, carrier_stiffnesses
 from mdlcad.parts.store import Parts, bodies_of, records_of
 from mdlcad.placement.placement import Placement
@@ -139,6 +140,17 @@ def _compensation_words(state: State) -> str:
     )
 
 
+def _drive(job: Job, state: State, progress: Progress) -> State:
+    return replace(state, drive=drive_of(state, job.process, job.seed))
+
+
+def drive_of(state: State, process: Process, seed: int) -> DriveLoads:
+    """What drives a device that is placed."""
+    network, sizing, placement = need(state.network), need(state.sizing), need(state.placement)
+    seats = clock_seats(network, placement, sizing, _stacked(process, state), Polygon(placement.boundary))
+    return drive_loads(network, sizing, process, need(state.proof).sensor_force, seed, seats)
+
+
 def _build_parts(job: Job, state: State, progress: Progress) -> State:
     network, placement, layout, sizing = (
         need(state.network),
@@ -146,7 +158,8 @@ def _build_parts(job: Job, state: State, progress: Progress) -> State:
         need(state.layout),
         need(state.sizing),
     )
-    bodies = build_parts(network, placement, layout, sizing, _stacked(job.process, state), Polygon(placement.boundary))
+    boundary, turning = Polygon(placement.boundary), need(state.drive).moments
+    bodies = build_parts(network, placement, layout, sizing, _stacked(job.process, state), boundary, turning)
     return replace(state, bodies=bodies)
 
 
@@ -159,13 +172,9 @@ def _check_geometry(job: Job, state: State, progress: Progress) -> State:
         need(state.bodies),
         state.carriers,
         _stacked(job.process, state),
+        need(state.drive).moments,
     )
     return replace(state, rules=rules)
-
-
-def _drive(job: Job, state: State, progress: Progress) -> State:
-    loads = drive_loads(need(state.network), need(state.sizing), job.process, need(state.proof).sensor_force, job.seed)
-    return replace(state, drive=loads)
 
 
 def _guide(job: Job, state: State, progress: Progress) -> State:
@@ -381,28 +390,8 @@ STEPS: tuple[Step, ...] = (
         ("process",),
     ),
     Step(
-        "parts",
-        ("network", "placement", "layout", "sizing", "carriers"),
-        ("bodies",),
-        _build_parts,
-        lambda s: f"{len(need(s.bodies))} bodies",
-        lambda s: to_json(Parts(records_of(need(s.bodies)), s.carriers)),
-        _restore_parts,
-        ("process",),
-    ),
-    Step(
-        "drc",
-        ("network", "placement", "layout", "sizing", "bodies", "carriers"),
-        ("rules",),
-        _check_geometry,
-        lambda s: f"{len(need(s.rules).errors)} errors, {len(need(s.rules).findings)} findings",
-        lambda s: to_json(s.rules),
-        from_artefact("rules", DesignRules, "drc"),
-        ("process",),
-    ),
-    Step(
         "drive",
-        ("network", "proof", "sizing"),
+        ("network", "proof", "sizing", "placement"),
         ("drive",),
         _drive,
         lambda s: (
@@ -412,6 +401,26 @@ STEPS: tuple[Step, ...] = (
         lambda s: to_json(s.drive),
         from_artefact("drive", DriveLoads),
         ("process", "seed"),
+    ),
+    Step(
+        "parts",
+        ("network", "placement", "layout", "sizing", "carriers", "drive"),
+        ("bodies",),
+        _build_parts,
+        lambda s: f"{len(need(s.bodies))} bodies",
+        lambda s: to_json(Parts(records_of(need(s.bodies)), s.carriers)),
+        _restore_parts,
+        ("process",),
+    ),
+    Step(
+        "drc",
+        ("network", "placement", "layout", "sizing", "bodies", "carriers", "drive"),
+        ("rules",),
+        _check_geometry,
+        lambda s: f"{len(need(s.rules).errors)} errors, {len(need(s.rules).findings)} findings",
+        lambda s: to_json(s.rules),
+        from_artefact("rules", DesignRules, "drc"),
+        ("process",),
     ),
     Step(
         "guide",

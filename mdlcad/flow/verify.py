@@ -19,9 +19,10 @@ from mdlcad.mapping import CELLS_FILE, map_netlist, recorded_library
 from mdlcad.mapping.two_phase import TwoPhaseLibrary
 from mdlcad.mechanics import Process, Sizing
 from mdlcad.mechanics.compensation import COMPENSATION_FILE, Compensation, compensate, compensated
-from mdlcad.mechanics.drive import DriveLoads
+from mdlcad.mechanics.drive import DriveLoads, drive_loads
 from mdlcad.network.model import Network
 from mdlcad.parts import build_parts
+from mdlcad.parts.clock import clock_seats
 from mdlcad.parts.plates import plates_of
 from mdlcad.parts.stiffness import carrier_stiffnesses
 from mdlcad.parts.store import Parts, records_of
@@ -107,12 +108,16 @@ def _verify(folder: Path, report: Report, workers: int, say: Callable[[str], Non
         else [f"{COMPENSATION_FILE}: not what the carriers ask for"],
     )
     sizing = compensated(sizing, solved)
-    bodies = build_parts(network, placement, layout, sizing, process, Polygon(placement.boundary))
+    drive = load(folder, "drive.json", DriveLoads)
+    boundary = Polygon(placement.boundary)
+    seats = clock_seats(network, placement, sizing, process, boundary)
+    loads = drive_loads(network, sizing, process, proof.sensor_force, report.seed, seats)
+    step("drive", [] if drive == loads else ["drive.json: not what the device's simulation gives"])
+    bodies = build_parts(network, placement, layout, sizing, process, boundary, drive.moments)
     stored = load(folder, "parts.json", Parts)
     step("parts", [] if stored == Parts(records_of(bodies), carriers) else ["parts.json: not what the layout makes"])
-    rules = check_geometry(network, sizing, placement, layout, bodies, carriers, process)
+    rules = check_geometry(network, sizing, placement, layout, bodies, carriers, process, drive.moments)
     step("drc", [f"{item.rule}: {', '.join(item.bodies)}: {item.message}" for item in rules.errors])
-    drive = load(folder, "drive.json", DriveLoads)
     again = guide(network, sizing, placement, process, bodies, drive).encode()
     step("guide", [] if (folder / GUIDE).read_bytes() == again else [f"{GUIDE}: is not the guide that the files make"])
     found = read_step(folder / f"{device.name}.step")

@@ -5,12 +5,14 @@ plate k lags plate 0 by k / P of a turn, as cranks on one shaft that many degree
 
 A unit presses on its plate with K_x (D - 2 g A^2 / l), D the clock displacement with the unit's preload, A its
 shuttle's displacement (the energy of docs/mechanics.md differentiated by D). The torque on the shaft is the sum over
-plates of force times r cos(turn). Friction of plates on their shims is not in it.
+plates of force times r cos(turn). Friction of plates on their shims is not in it. What the units of a plate push
+unevenly turns the plate about its handle: the sum of force times height over the handle, which its guides bear.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -46,6 +48,27 @@ class ClockPlateLoad:
 
 
 @dataclass(frozen=True, slots=True)
+class Seat:
+    """Where a unit meets the clock: its clock ``plate``'s name, and its ``height`` over that plate's handle, mm."""
+
+    mass: str
+    plate: str
+    height: float
+
+
+@dataclass(frozen=True, slots=True)
+class PlateTurning:
+    """What turns one clock plate, of one deck.
+
+    Attributes:
+        moment_nmm: largest moment about its handle, either way.
+    """
+
+    plate: str
+    moment_nmm: float
+
+
+@dataclass(frozen=True, slots=True)
 class TabLoad:
     """One tab at the boundary.
 
@@ -71,6 +94,7 @@ class DriveLoads:
         torque_most_nmm: largest |torque| on the clock's shaft.
         energy_per_turn_mj: mean work of the clock a turn, what damping takes away; mJ.
         sensors, actuators: their tabs.
+        turning: of every clock plate of every deck.
     """
 
     plates: tuple[ClockPlateLoad, ...]
@@ -78,13 +102,22 @@ class DriveLoads:
     energy_per_turn_mj: float
     sensors: tuple[TabLoad, ...]
     actuators: tuple[TabLoad, ...]
+    turning: tuple[PlateTurning, ...] = ()
+
+    @property
+    def moments(self) -> dict[str, float]:
+        """What turns a clock plate about its handle, N mm, by plate."""
+        return {item.plate: item.moment_nmm for item in self.turning}
 
 
-def drive_loads(network: Network, sizing: Sizing, process: Process, sensor_force: float, seed: int) -> DriveLoads:
+def drive_loads(
+    network: Network, sizing: Sizing, process: Process, sensor_force: float, seed: int, seats: Sequence[Seat] = ()
+) -> DriveLoads:
     """Simulate ``network`` with random inputs and say what drives it.
 
     Args:
         sensor_force: of a sensor, in the network's unit of force, as the proof uses it.
+        seats: in any order; units that have none turn no plate.
     """
     system = system_of(network)
     steps = math.ceil(steps_for(system) / _FRAMES) * _FRAMES
@@ -98,7 +131,8 @@ def drive_loads(network: Network, sizing: Sizing, process: Process, sensor_force
     cycles = _DECISIONS * network.cycles_per_tick
     trace = simulate(system, stimulus, cycles * steps, trace_stride=stride, steps_per_period=steps).trace
     turn = 2.0 * math.pi * np.arange(len(trace)) / _FRAMES
-    plates, torque = _clock(network, sizing, process, trace, turn)
+    force_by_unit = _clock_forces(network, sizing, process, trace, turn)
+    plates, torque = _clock(network, sizing, force_by_unit, turn)
     return DriveLoads(
         plates=plates,
         torque_most_nmm=round(float(np.abs(torque).max()), 3),
@@ -113,31 +147,49 @@ def drive_loads(network: Network, sizing: Sizing, process: Process, sensor_force
             for port, index in zip(network.sensors, sensors, strict=True)
         ),
         actuators=_actuators(network, sizing, process, trace, steps, stride),
+        turning=_turning(network, force_by_unit, seats),
     )
 
 
+def _clock_forces(network: Network, sizing: Sizing, process: Process, trace: Floats, turn: Floats) -> Floats:
+    """float[frames, masses, lanes]: how hard every unit pushes its clock plate back, N."""
+    law, unit, phases = sizing.law, process.unit, network.dynamics.phases
+    span = flexing_span(process).bend
+    swing = clock_swing(network, law)
+    preload = {item.mass: item.preload for item in sizing.units}
+    force = np.empty_like(trace)
+    for index, mass in enumerate(network.masses):
+        pushed = preload[mass.name] + swing * np.sin(turn - 2.0 * math.pi * mass.phase / phases)
+        eased = 2.0 * unit.shape * (unit.throw_unit * trace[:, index]) ** 2 / span
+        force[:, index] = law.axial_stiffness * (pushed[:, None] - eased)
+    return force
+
+
 def _clock(
-    network: Network, sizing: Sizing, process: Process, trace: Floats, turn: Floats
+    network: Network, sizing: Sizing, force_by_unit: Floats, turn: Floats
 ) -> tuple[tuple[ClockPlateLoad, ...], Floats]:
     """The plates' loads, and the shaft's torque float[frames, lanes] in N mm."""
-    law, unit, span = sizing.law, process.unit, flexing_span(process).bend
     phases = network.dynamics.phases
-    swing = clock_swing(network, law)
-    preload = np.array([item.preload for item in sizing.units])
+    swing = clock_swing(network, sizing.law)
     phase = np.array([mass.phase for mass in network.masses])
-    amplitude = unit.throw_unit * trace
-    torque = np.zeros((len(trace), trace.shape[2]))
+    torque = np.zeros((len(turn), force_by_unit.shape[2]))
     plates = []
     for k in range(phases):
-        angle = turn - 2.0 * math.pi * k / phases
-        mine = phase == k
-        pushed = preload[None, mine, None] + swing * np.sin(angle)[:, None, None]
-        eased = 2.0 * unit.shape * amplitude[:, mine] ** 2 / span
-        force = law.axial_stiffness * (pushed - eased).sum(axis=1)
-        torque += force * swing * np.cos(angle)[:, None]
-        least, most = (float(force.min()), float(force.max())) if mine.any() else (0.0, 0.0)
+        force = force_by_unit[:, phase == k].sum(axis=1)
+        torque += force * swing * np.cos(turn - 2.0 * math.pi * k / phases)[:, None]
+        least, most = float(force.min()), float(force.max())
         plates.append(ClockPlateLoad(k, round(2.0 * swing, 4), round(least, 2), round(most, 2)))
     return tuple(plates), torque
+
+
+def _turning(network: Network, force_by_unit: Floats, seats: Sequence[Seat]) -> tuple[PlateTurning, ...]:
+    """The largest moment of every plate about its handle."""
+    index = {mass.name: i for i, mass in enumerate(network.masses)}
+    moments: dict[str, Floats] = {}
+    for seat in seats:
+        moment = force_by_unit[:, index[seat.mass]] * seat.height
+        moments[seat.plate] = moments[seat.plate] + moment if seat.plate in moments else moment
+    return tuple(PlateTurning(plate, round(float(np.abs(moments[plate]).max()), 1)) for plate in sorted(moments))
 
 
 def _actuators(

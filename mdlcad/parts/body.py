@@ -15,6 +15,7 @@ class BodyKind(StrEnum):
     BASE = "base"
     COVER = "cover"
     CLOCK = "clock"
+    GUIDE = "guide"
     UNIT = "unit"
     TRUNK = "trunk"
     RUNG = "rung"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 
 from msgspec import UNSET
 from shapely import Polygon
@@ -29,6 +30,8 @@ from mdlcad.placement.placement import Placement
 from mdlcad.routing.decks import deck_parts
 from mdlcad.routing.layout import Layout, Side
 
+NOTHING: Mapping[str, float] = MappingProxyType({})
+
 
 def build_parts(
     network: Network,
@@ -37,12 +40,14 @@ def build_parts(
     sizing: Sizing,
     process: Process,
     device_boundary: Polygon | None = None,
+    turning: Mapping[str, float] = NOTHING,
 ) -> tuple[Body, ...]:
     """All bodies, bottom to top as far as they lie in plates; pins, posts and shims come with what they belong to.
 
     Args:
         process: with the plates of both decks, if the placement has two.
         device_boundary: the device's outline in mm; the placement's own if not given.
+        turning: by clock plate, the moment (N mm) about its handle that its guides are to bear.
 
     Raises:
         UsageError: the process lacks a plate that the network needs, or the boundary leaves a clock plate in pieces.
@@ -52,14 +57,14 @@ def build_parts(
     decks = deck_parts(network, placement, layout, sizing.rules)
     if decks is None:
         stack = make_stack(process, sizing, network.dynamics.phases)
-        only = _deck(stack, network, placement, layout, hub_plates(layout), boundary)
+        only = _deck(stack, network, placement, layout, hub_plates(layout), boundary, turning)
         screws = screw_bodies(stack, boundary, only.cuts)
         openings = windows(stack, network, boundary, only.hub_pins, [*only.over, *screws])
         return only.bodies(stack, boundary, screws, openings, screws)
     used = hub_plates(layout)
     stacks = {deck: make_stack(process, sizing, network.dynamics.phases, deck) for deck in Deck}
     made = {
-        deck: _deck(stacks[deck], part.network, part.placement, part.layout, used, boundary)
+        deck: _deck(stacks[deck], part.network, part.placement, part.layout, used, boundary, turning)
         for deck, part in decks.items()
     }
     screws = screw_bodies(stacks[Deck.LOWER], boundary, [cut for half in made.values() for cut in half.cuts])
@@ -96,6 +101,7 @@ class _Made:
     posts: tuple[Body, ...]
     handle: Handle
     notches: dict[str, list[Polygon]]
+    turning: Mapping[str, float]
 
     @property
     def over(self) -> tuple[Body, ...]:
@@ -118,7 +124,7 @@ class _Made:
         return (
             *frame_bodies(stack, boundary, self.ribs, [*self.posts, *hanging], self.notches, through, openings),
             *self.posts,
-            *clock_plates(stack, boundary, self.handle, self.clock_pins, self.posts),
+            *clock_plates(stack, boundary, self.handle, self.clock_pins, self.posts, self.turning),
             *self.clock_pins,
             *self.units,
             *self.hub_pins,
@@ -137,6 +143,7 @@ def _deck(
     layout: Layout,
     used: Mapping[tuple[str, Side], list[str]],
     boundary: Polygon,
+    turning: Mapping[str, float],
 ) -> _Made:
     """A deck's units, carriers and flexures; ``used``: plates that hold a block, of all decks."""
     sizing = stack.sizing
@@ -184,4 +191,5 @@ def _deck(
         posts=tuple(rib_posts(stack, standing, found, boundary)),
         handle=handle,
         notches=notches,
+        turning=turning,
     )

@@ -1,8 +1,8 @@
-"""Clock plates, one a phase: sheets inside the rim that move in x, and the pins that push the units' clock blocks."""
+"""Clock plates, one a phase: sheets that move in x on their guides, and the pins that push the units' clock blocks."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import shapely
@@ -10,13 +10,20 @@ from shapely import Polygon
 from shapely.affinity import translate
 
 from mdlcad.errors import UsageError
+from mdlcad.mechanics.decks import Deck, plate_in
+from mdlcad.mechanics.drive import Seat
+from mdlcad.mechanics.process import Process
 from mdlcad.mechanics.sizes import UnitSize
+from mdlcad.mechanics.sizing import Sizing
+from mdlcad.network.model import Network
 from mdlcad.parts import palette
 from mdlcad.parts.body import Body, BodyKind
 from mdlcad.parts.frame import interior
+from mdlcad.parts.guides import Turned, clock_guides
 from mdlcad.parts.shapes import GRID, box, cut, join, only, pieces, square, without_thin
-from mdlcad.parts.stack import Hub, Stack, clock_ref
+from mdlcad.parts.stack import Hub, Stack, clock_ref, make_stack
 from mdlcad.parts.unit import clock_pin_x
+from mdlcad.placement.placement import Placement
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +43,26 @@ def handle_place(stack: Stack, boundary: Polygon) -> Handle:
     at_edge = max(pieces(strip.intersection(boundary)), key=lambda piece: piece.area)
     y = round((at_edge.bounds[1] + at_edge.bounds[3]) / 2.0, 4)
     return Handle(y, x_high - 3.0 * rules.frame_width, x_high + 2.0 * rules.frame_width)
+
+
+def clock_seats(
+    network: Network, placement: Placement, sizing: Sizing, process: Process, boundary: Polygon
+) -> tuple[Seat, ...]:
+    """Where every unit meets its clock plate.
+
+    The handles of both decks stand at one height.
+    """
+    stack = make_stack(process, sizing, network.dynamics.phases)
+    handle = handle_place(stack, boundary).y
+    phases = {mass.name: mass.phase for mass in network.masses}
+    return tuple(
+        Seat(
+            place.mass,
+            plate_in(Deck.UPPER if place.deck is Deck.UPPER else Deck.LOWER, stack.clock_plates[phases[place.mass]]),
+            round(place.y - handle, 4),
+        )
+        for place in placement.masses
+    )
 
 
 def handle_notch(stack: Stack, handle: Handle) -> Polygon:
@@ -60,12 +87,18 @@ def clock_pin(stack: Stack, hub: Hub, unit: UnitSize) -> Body:
 
 
 def clock_plates(
-    stack: Stack, boundary: Polygon, handle: Handle, pins: Sequence[Body], posts: Sequence[Body]
+    stack: Stack,
+    boundary: Polygon,
+    handle: Handle,
+    pins: Sequence[Body],
+    posts: Sequence[Body],
+    turning: Mapping[str, float],
 ) -> list[Body]:
-    """The clock plates and their handles: holes for their own pins, slots for the pins of plates below and for posts.
+    """The clock plates with their guides and handles: holes for their own pins, slots for other plates' and for posts.
 
     Args:
         pins: all clock pins; posts: all posts that pass clock plates.
+        turning: by plate, the moment (N mm) about its handle that its guides are to bear; 0 if not there.
 
     Raises:
         UsageError: the inside of the boundary falls apart, so that a plate would be in pieces.
@@ -75,23 +108,30 @@ def clock_plates(
     inner = inside.intersection(translate(inside, -rules.clock_throw)).intersection(
         translate(inside, rules.clock_throw)
     )
+    roomy = interior(stack, boundary)
     half = rules.frame_width / 2.0
     hole = square(handle.x_end - half, handle.y, rules.pin)
     tongue = box(handle.x_start, handle.y - half, handle.x_end, handle.y + half)
-    bodies = []
+    bodies: list[Body] = []
     for phase, plate in enumerate(stack.clock_plates):
         level = stack.bottom(plate)
-        own, away = clock_ref(phase), [hole]
+        own, away, rows = clock_ref(phase), [hole], []
         for body in (*pins, *posts):
             if not body.z <= level < body.z + body.thickness:
                 continue
             x, y = body.section.centroid.x, body.section.centroid.y
             if body.moves_with == (own,):
                 away.append(square(x, y, rules.pin))
+                rows.append(y)
                 continue
             reach = rules.pin / 2.0 + rules.gap
             run = reach + rules.clock_throw + body.throw[0]
             away.append(box(x - run, y - reach, x + run, y + reach))
+        turned = Turned(turning.get(plate, 0.0), handle.y, tuple(rows))
+        guides = clock_guides(stack, plate, roomy, inner, [*away, tongue], turned)
+        if guides is not None:
+            away += [place.pocket for place in guides.places]
+            bodies += guides.bodies(stack, plate, own)
         try:
             whole = only(without_thin(cut(join([inner, tongue]), away), stack.process.pin.wall))
             section, held = only(whole.intersection(inner)), only(shapely.difference(whole, inner, grid_size=GRID))

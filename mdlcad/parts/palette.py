@@ -5,6 +5,7 @@ units, clock        phase 0 blue, 1 green, 2 purple, then grey
 couplers            dark teal (pass a signal on)
 rockers             red (turn it over)
 bias leaves         orange
+guides              navy (bend with their plate)
 rungs, trunks       warm greys, tabs gold (they are touched)
 frame, base, cover  light greys; pins, posts and screws near black
 ==================  ==========================================
@@ -22,6 +23,7 @@ TAB = "#e0b21b"
 COUPLER = "#1f7a7a"
 ROCKER = "#d62f2f"
 BIAS = "#f08c1e"
+GUIDE = "#1b2a6b"
 PIN = "#3a3f47"
 POST = "#22262c"
 SCREW = "#5b626c"

@@ -99,6 +99,7 @@ def page(folder: Path) -> str:
         proofs=proofs,
         margins=margin_rows(report, process, sizing, proofs),
         rules=rule_rows(rules, report, process) if rules else [],
+        guides=rules.guides if rules else (),
         sizes=size_rows(sizing, process) if sizing and process else [],
         flexures=flexure_rows(sizing) if sizing else [],
         compensation=compensation,

@@ -29,6 +29,10 @@ _RULES = {
     "seam": ("no seam between tiles crosses or comes near a flexure or a carrier", ""),
     "unrealised_coupling": ("every coupling of the network has its part", ""),
     "carrier_stiffness": ("a carrier is stiff enough for the couplers it drives", "times"),
+    "guide_missing": ("every clock plate has its two guides", "guides"),
+    "guide_strain": ("no guide is strained beyond its limit at the end of its stroke", ""),
+    "guide_buckling": ("no guide bears more than half of the load that buckles it", "N"),
+    "guide_turn": ("a clock plate turns no unit's clock by more than the machine's repeatability", "mm"),
     "strain": ("no flexure is strained beyond its limit in repeated use", ""),
     "strain_peak": ("no flexure is strained beyond its limit at rare peaks", ""),
     "preload_room": ("every solved preload stays within the room that its slot was sized for", "mm"),
@@ -96,7 +100,7 @@ class FlexureRow:
 def rule_rows(rules: DesignRules, report: Report, process: Process | None) -> list[RuleRow]:
     """One row a rule, those that are missed first; of a rule that holds, the worst that there is where it is known."""
     rows = []
-    nearest = _nearest(report, process) if process else {}
+    nearest = _nearest(report, process) | _nearest_guide(rules, process) if process else {}
     for rule, count in rules.counts.items():
         found = [item for item in rules.findings if item.rule == rule]
         asks, unit = _RULES.get(rule, (rule.replace("_", " "), ""))
@@ -121,6 +125,15 @@ def _nearest(report: Report, process: Process) -> dict[str, str]:
         tiled = f", {report.tiles} tiles" if report.tiles and report.tiles > len(report.plates) else ""
         found["bed"] = f"{size} (bed {bed[0]:g} × {bed[1]:g}): {widest.plate}{tiled}"
     return found
+
+
+def _nearest_guide(rules: DesignRules, process: Process) -> dict[str, str]:
+    """Of the guides that keep the limit of ``guide_turn``, those that come nearest to it."""
+    if not rules.guides:
+        return {}
+    worst = max(rules.guides, key=lambda item: item.error_mm)
+    limit = process.machine.repeatability
+    return {"guide_turn": f"{worst.error_mm:.3f} mm (limit {limit:g}): {worst.plate}, {worst.moment_nmm:.0f} N mm"}
 
 
 def _worst(found: Sequence[Finding], unit: str) -> str:

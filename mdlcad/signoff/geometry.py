@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from shapely import Polygon
 
@@ -19,6 +19,7 @@ from mdlcad.placement.placement import Placement
 from mdlcad.routing.check import check_layout
 from mdlcad.routing.layout import Layout
 from mdlcad.signoff.drc import RULES, Finding, check_containment, check_cut, check_motion
+from mdlcad.signoff.guides import GUIDE_RULES, check_guides
 from mdlcad.signoff.seams import check_tiles
 from mdlcad.signoff.summary import DesignRules
 from mdlcad.signoff.trapped import check_order
@@ -35,8 +36,12 @@ def check_geometry(
     bodies: Sequence[Body],
     carriers: Sequence[CarrierStiffness],
     process: Process,
+    moments: Mapping[str, float],
 ) -> DesignRules:
     """Run every rule; the findings of all.
+
+    Args:
+        moments: what turns each clock plate about its handle, N mm, by plate.
 
     Raises:
         SignoffError: there is nothing to check.
@@ -50,6 +55,8 @@ def check_geometry(
         findings += check_cut(plate, members, process.machine.min_wall, process.machine.min_gap)
         findings += check_tiles(members, tiles_of(plate, members, process), process.machine.bed, process.pin.wall)
     findings += check_order(bodies, process)
+    of_guides, guides = check_guides(bodies, moments, process)
+    findings += of_guides
     where = {mass.mass: (mass.x, mass.y) for mass in placement.masses}
     findings += [
         Finding(item.rule, item.names, item.x, item.y, 0.0, 0.0, item.message)
@@ -65,9 +72,9 @@ def check_geometry(
         Finding("unrealised_coupling", (name,), *where[targets.get(name, name)], 1.0, 0.0, reason)
         for name, reason in layout.unrealised
     ]
-    ran = sorted({*RULES, *CARRIER_RULES, *STRAIN_RULES, *(item.rule for item in findings)})
+    ran = sorted({*RULES, *CARRIER_RULES, *STRAIN_RULES, *GUIDE_RULES, *(item.rule for item in findings)})
     counts = {rule: sum(item.rule == rule for item in findings) for rule in ran}
-    return DesignRules(counts, tuple(findings), ())
+    return DesignRules(counts, tuple(findings), (), tuple(guides))
 
 
 def _strains(

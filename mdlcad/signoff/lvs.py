@@ -111,7 +111,7 @@ def recover(bodies: Sequence[ReadBody]) -> Recovered:
     rigid.add_nodes_from(index for index, kind in enumerate(kinds) if kind in _RIGID)
     rigid.add_edges_from((a, b) for a, b in pairs if kinds[a] in _RIGID and kinds[b] in _RIGID)
     group = {index: number for number, part in enumerate(nx.connected_components(rigid)) for index in part}
-    problems = _jams(bodies, pairs)
+    problems = _jams(bodies, pairs) + _unguided(bodies, pairs)
     owner: dict[int, set[str]] = {}
     clock_groups: set[int] = set()
     for a, b in pairs:
@@ -155,6 +155,8 @@ def _jams(bodies: Sequence[ReadBody], pairs: list[tuple[int, int]]) -> list[str]
                 found.append(f"jam: {one} meets {other}")
             elif _kind(one) == "post" and _kind(other) in _RIGID:
                 found.append(f"jam: {other} meets {one}")
+            elif one in clocks and _kind(other) in ("spacer", "frame"):
+                found.append(f"jam: {one} meets {other}")
             elif _kind(one) == "post" and other in clocks:
                 found.append(f"jam: {one} meets {other}, where a slot should be")
     for pin, plates in sorted(driven.items()):
@@ -164,6 +166,32 @@ def _jams(bodies: Sequence[ReadBody], pairs: list[tuple[int, int]]) -> list[str]
         body.name for body in bodies if clocks and body.name.startswith("pin.clock.") and body.name not in driven
     )
     return found + [f"open: {name} meets no clock plate" for name in loose]
+
+
+_GUIDES = 2
+"""Guides of a clock plate: with one it can turn."""
+
+
+def _unguided(bodies: Sequence[ReadBody], pairs: list[tuple[int, int]]) -> list[str]:
+    """Guides that do not join a clock plate to its rim, and clock plates that they do not keep from turning."""
+    clocks = {body.name.removeprefix("handle."): 0 for body in bodies if body.name.startswith("handle.")}
+    joined: dict[str, set[str]] = {body.name: set() for body in bodies if _kind(body.name) == "guide"}
+    for a, b in pairs:
+        for one, other in ((bodies[a].name, bodies[b].name), (bodies[b].name, bodies[a].name)):
+            if one in joined:
+                joined[one].add(other)
+    found = []
+    for name, others in joined.items():
+        plates, rims = others & set(clocks), {other for other in others if _kind(other) == "spacer"}
+        if len(plates) != 1 or len(rims) != 1 or len(others) != 2:
+            found.append(f"open: {name} joins {', '.join(sorted(others)) or 'nothing'}, not a clock plate and its rim")
+        else:
+            clocks[plates.pop()] += 1
+    return found + [
+        f"open: {count} guides hold {plate}, {_GUIDES} are needed"
+        for plate, count in clocks.items()
+        if count != _GUIDES
+    ]
 
 
 def _flexures(

@@ -50,6 +50,7 @@ _NAMES = {
     BodyKind.TRUNK: "trunk",
     BodyKind.TAB: "tab",
     BodyKind.CLOCK: "clock plate",
+    BodyKind.GUIDE: "guide of a clock plate",
 }
 
 

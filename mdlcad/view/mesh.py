@@ -23,7 +23,7 @@ _APART = 0.2
 LOOSE = ("shims", "pins")
 """What is not cut from a plate, but lies or stands between plates."""
 
-_FLEXURES = (BodyKind.UNIT, BodyKind.COUPLER, BodyKind.ROCKER, BodyKind.BIAS)
+_FLEXURES = (BodyKind.UNIT, BodyKind.COUPLER, BodyKind.ROCKER, BodyKind.BIAS, BodyKind.GUIDE)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

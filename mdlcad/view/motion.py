@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from shapely import Polygon
 
 from mdlcad.mechanics import Process, Sizing
 from mdlcad.network.model import Network
@@ -79,6 +80,8 @@ class Follower:
         self._sizing: Sizing = built.sizing
         self._process: Process = built.process
         self._hubs = {place.mass: (place.x, place.y) for place in built.placement.masses}
+        # twice the middle of the boundary in y
+        self._across = sum(Polygon(built.placement.boundary).bounds[1::2])
         self._couplers = {item.coupling: item.leaf.reach for item in built.sizing.couplers}
         self._biases = {item.mass: item.leaf.reach for item in built.sizing.biases}
         self._preloads = {unit.mass: unit.preload for unit in built.sizing.units}
@@ -87,6 +90,7 @@ class Follower:
             BodyKind.COUPLER: self._coupler,
             BodyKind.ROCKER: self._rocker,
             BodyKind.BIAS: self._bias,
+            BodyKind.GUIDE: self._guide,
         }
 
     def follow(self, body: Body, points: Floats) -> Follow:
@@ -128,6 +132,13 @@ class Follower:
         hub = body.moves_with[0]
         mass = hub.partition(":")[2]
         return self._between(hub, "frame", _smooth(self._along(mass, self._biases.get(mass, 0.0), points)))
+
+    def _guide(self, body: Body, points: Floats) -> Follow:
+        """Its root with the frame, its end, which is the one farther from the rim, with the plate."""
+        plate = self._references.names[self._number(body, "clock")]
+        low, high = body.section.bounds[1], body.section.bounds[3]
+        share = (points[:, 1] - low) / (high - low)
+        return self._between("frame", plate, _smooth(share if low + high < self._across else 1.0 - share))
 
     def _unit(self, body: Body, points: Floats) -> Follow:
         """Shuttle, beams to the frame (left) and to the end block (right), then the series spring and clock block."""

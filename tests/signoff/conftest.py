@@ -28,7 +28,8 @@ def files(device: Device, bodies: dict[str, Body], tmp_path_factory: pytest.Temp
     (folder / "plates").mkdir()
     # what takes the most time to write and to read, and holds nothing that is looked for
     idle = (BodyKind.FRAME, BodyKind.BASE, BodyKind.COVER, BodyKind.SPACER)
-    kept = [body for body in bodies.values() if body.kind not in idle or body.name == "frame.V"]
+    needed = ("frame.V", *(name for name in bodies if name.startswith("spacer.clock")))
+    kept = [body for body in bodies.values() if body.kind not in idle or body.name in needed]
     (folder / "small.step").write_bytes(step_assembly("small", kept))
     for plate, members in plates_of(list(bodies.values())).items():
         (folder / "plates" / f"{plate}.svg").write_bytes(svg_plate(plate, members))

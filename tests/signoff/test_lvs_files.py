@@ -118,3 +118,26 @@ def test_a_missing_notch(bench: Bench) -> None:
     rim = bench.section("frame.V").union(box(-1, trunk.bounds[1], trunk.bounds[0], trunk.bounds[1] + 2))
     bench.write(replace(bench.bodies["frame.V"], kind=BodyKind.FRAME, section=rim))
     assert "jam: trunk.m0.t meets frame.V" in bench.differences()
+
+
+def test_a_clock_plate_without_one_of_its_guides(bench: Bench) -> None:
+    del bench.found["guide.clock-1.1"]
+    assert bench.differences() == "open: 1 guides hold clock-1, 2 are needed"
+
+
+def test_a_guide_cut_from_its_rim(bench: Bench) -> None:
+    guide = bench.bodies["guide.clock-0.0"]
+    low, bottom, high, top = guide.section.bounds
+    bench.write(replace(guide, section=box(low, bottom + 1.0, high, top)))
+    assert "open: guide.clock-0.0 joins clock-0, not a clock plate and its rim" in bench.differences()
+
+
+def test_a_guide_that_joins_two_things_too_many(bench: Bench) -> None:
+    """Without its pocket the plate is one with the rim along the leaf and beyond."""
+    plate, guide = bench.section("clock-0"), bench.section("guide.clock-0.0")
+    other = bench.section("guide.clock-0.1")
+    bridge = box(guide.bounds[0], guide.bounds[1], other.bounds[2], guide.bounds[1] + 1.0).difference(guide)
+    filled = plate.union(bridge.difference(other))
+    assert isinstance(filled, Polygon)
+    bench.write(replace(bench.bodies["clock-0"], section=filled))
+    assert "jam: clock-0 meets spacer.clock-0" in bench.differences()

@@ -99,7 +99,7 @@ def test_a_series_spring_preloaded_too_far_is_found(device: Device) -> None:
 def test_the_design_rules_do_not_take_the_sizings_word(device: Device) -> None:
     def count(sizing: Sizing) -> int:
         rules = check_geometry(
-            device.network, sizing, device.placement, device.layout, device.bodies(), (), device.process
+            device.network, sizing, device.placement, device.layout, device.bodies(), (), device.process, {}
         )
         return rules.counts["strain"]
 
