@@ -93,7 +93,8 @@ def build(request: Request, say: Callable[[str], None]) -> tuple[Path, list[str]
         request.seeds,
         None if request.like is None else load_earlier(request.like, library, process),
     )
-    state = _load(job, loaded)
+    states = _load(job, loaded)
+    state = states[-1] if states else State()
     standing = standing_build(place, request.reuse)
     made: dict[str, str] = {}
     records: list[StageRecord] = []
@@ -103,10 +104,11 @@ def build(request: Request, say: Callable[[str], None]) -> tuple[Path, list[str]
         # what the build leans on goes with it, so that it can be signed off again elsewhere
         write_atomic(folder / "process.json", to_json(process))
         write_atomic(folder / CELLS_FILE, to_json(library))
-        for step in loaded:
-            records.append(_written(step, job, state))
-            made |= digests_of(step.makes, state, folder)
-            stopped = stopped or _objection(step, state)
+        # each as it was then: a later stage may make an artefact anew
+        for step, before in zip(loaded, states, strict=True):
+            records.append(_written(step, job, before))
+            made |= digests_of(step.makes, before, folder)
+            stopped = stopped or _objection(step, before)
         for step in steps:
             if stopped is not None:
                 break
@@ -180,14 +182,14 @@ def _chosen(plan: tuple[Step, ...], first: str | None, last: str | None) -> tupl
     return plan[start:stop], plan[:start]
 
 
-def _load(job: Job, steps: tuple[Step, ...]) -> State:
-    """The state that the artefacts of ``steps`` in the job's folder make."""
+def _load(job: Job, steps: tuple[Step, ...]) -> list[State]:
+    """The states that the artefacts in the job's folder make, after each of ``steps``."""
     if steps and not job.folder.is_dir():
         raise UsageError(f"{job.folder}: no such build folder; --from needs one")
-    state = State()
+    states: list[State] = []
     for step in steps:
-        state = step.restore(job, state, ())
-    return state
+        states.append(step.restore(job, states[-1] if states else State(), ()))
+    return states
 
 
 def _written(step: Step, job: Job, state: State) -> StageRecord:

@@ -165,3 +165,12 @@ def test_a_build_can_start_again_from_a_stage(built, tmp_path):
     folder = tmp_path / "from"
     assert main(["build", str(built), "--from", "sizing", "--to", "sizing", "-o", str(folder)]) == HOLDS
     assert (folder / "sizing.json").read_bytes() == (built / "sizing.json").read_bytes()
+
+
+def test_what_is_taken_from_a_folder_is_written_as_it_was(built, tmp_path):
+    """The sizing too, although the compensation makes it anew after it."""
+    folder = tmp_path / "from"
+    assert main(["build", str(built), "--from", "drive", "--to", "drc", "-o", str(folder)]) == HOLDS
+    for path in sorted(folder.glob("*.json")):
+        if path.name != "report.json":
+            assert path.read_bytes() == (built / path.name).read_bytes(), path.name
