@@ -7,7 +7,8 @@ plate, far apart in x, take that moment as a push in one and a pull in the other
 Each leaf is a guided beam (both ends clamped, one displaced): sway 12 E I / L^3, along its length E A / L, strain
 3 t a / L^2 at a displacement a (``docs/mechanics.md``). A pull P along it adds P a / 10 to its end moments (the sway
 force is 12 E I a / L^3 + 6/5 P a / L, the beam constraint model's first term, and the moments balance). Held in x by
-its plate, it buckles as a beam clamped at both ends does: 4 pi^2 E I / L^2 (Euler).
+its plate, it buckles as a beam clamped at both ends does: 4 pi^2 E I / L^2 (Euler). L is what is left of it between
+its fillets (``fillet.shortening``), where it is strained by the notch factor more than beam theory says.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from mdlcad.mechanics.fillet import flat_root, notch_factor, shortening
 from mdlcad.mechanics.findings import Finding
 from mdlcad.mechanics.process import Plate, Process
 
@@ -29,12 +31,28 @@ STEP = 0.5
 
 @dataclass(frozen=True, slots=True)
 class GuideLeaf:
-    """One leaf: ``wall`` and ``length`` in its plate's plane, ``depth`` the plate's thickness, mm; ``modulus`` MPa."""
+    """One leaf.
+
+    Attributes:
+        wall, length: in its plate's plane, mm; depth: the plate's thickness, mm; modulus: MPa.
+        fillet: radius at its roots, on both sides, mm.
+    """
 
     wall: float
     length: float
     depth: float
     modulus: float
+    fillet: float
+
+    @property
+    def _bent(self) -> float:
+        """As long as it bends, mm."""
+        return self.length - 2.0 * shortening(self.wall, flat_root(self.fillet, 2))[0]
+
+    @property
+    def _stretched(self) -> float:
+        """As long as it stretches, mm."""
+        return self.length - 2.0 * shortening(self.wall, flat_root(self.fillet, 2))[1]
 
     @property
     def _bending(self) -> float:
@@ -44,23 +62,28 @@ class GuideLeaf:
     @property
     def sway(self) -> float:
         """Stiffness in x, N/mm."""
-        return 12.0 * self._bending / self.length**3
+        return 12.0 * self._bending / self._bent**3
 
     @property
     def along(self) -> float:
         """Stiffness along its length, N/mm."""
-        return self.modulus * self.depth * self.wall / self.length
+        return self.modulus * self.depth * self.wall / self._stretched
 
     @property
     def buckling(self) -> float:
         """Load along its length, N, at which it buckles between its clamped ends."""
-        return 4.0 * math.pi**2 * self._bending / self.length**2
+        return 4.0 * math.pi**2 * self._bending / self._bent**2
 
     def strain(self, stroke: float, load: float) -> float:
         """Largest strain with one end displaced by ``stroke`` mm in x under a ``load`` N along its length."""
-        bent = 3.0 * self.wall * stroke / self.length**2
+        bent = 3.0 * self.wall * stroke / self._bent**2
         more = load * stroke / 10.0 * self.wall / 2.0 / self._bending
-        return bent + more + load / (self.modulus * self.depth * self.wall)
+        return self._notch * (bent + more + load / (self.modulus * self.depth * self.wall))
+
+    @property
+    def _notch(self) -> float:
+        """Strain in a fillet over that of beam theory at its end; sharp corners are taken as if they were none."""
+        return notch_factor(self.wall, self.fillet) if self.fillet else 1.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,9 +105,12 @@ class GuideLoad:
 def guide_leaf(process: Process, plate: Plate, stroke: float, wall: float) -> GuideLeaf:
     """The shortest leaf of a ``wall`` (mm) in ``plate`` that its ``stroke`` (mm, half of the plate's way) strains no
     more than its share of the material's limit."""
-    material = process.material(plate)
-    length = math.sqrt(3.0 * wall * stroke / (STROKE_SHARE * material.strain_limit))
-    return GuideLeaf(wall, round(math.ceil(length / STEP - 1e-9) * STEP, 6), plate.thickness, material.modulus)
+    material, fillet = process.material(plate), process.machine.fillet
+    notch = notch_factor(wall, fillet) if fillet else 1.0
+    bent = math.sqrt(3.0 * wall * stroke * notch / (STROKE_SHARE * material.strain_limit))
+    length = bent + 2.0 * shortening(wall, flat_root(fillet, 2))[0]
+    rounded = round(math.ceil(length / STEP - 1e-9) * STEP, 6)
+    return GuideLeaf(wall, rounded, plate.thickness, material.modulus, fillet)
 
 
 def walls(process: Process) -> Iterator[float]:

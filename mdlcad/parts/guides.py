@@ -17,7 +17,7 @@ from shapely import Geometry, LineString, Polygon
 from mdlcad.mechanics.guides import GuideLeaf, GuideLoad, guide_findings, guide_leaf, guide_load, walls
 from mdlcad.parts import palette
 from mdlcad.parts.body import Body, BodyKind
-from mdlcad.parts.shapes import GRID, box, cut, join, only
+from mdlcad.parts.shapes import GRID, box, cut, filleted, join, only
 from mdlcad.parts.stack import FRAME_REF, Stack
 
 _STEP_MM = 0.5
@@ -54,18 +54,26 @@ class Guides:
 
     def _body(self, stack: Stack, plate: str, reference: str, number: int, place: GuidePlace) -> Body:
         stroke, half = stack.sizing.rules.clock_throw, self.leaf.wall / 2.0
-        low, high = sorted((place.root, place.root + place.way * self.leaf.length))
-        strip, swept = (box(place.x - half - more, low, place.x + half + more, high) for more in (0.0, stroke))
+        end = place.root + place.way * self.leaf.length
+
+        def upright(half_width: float, start: float, stop: float) -> Polygon:
+            return box(place.x - half_width, min(start, stop), place.x + half_width, max(start, stop))
+
         feet = [] if place.foot is None else [place.foot]
+        broad = half + 2.0 * self.leaf.fillet
+        # what is filleted against rim and plate is the leaf's
+        rim, sheet = (upright(broad, at, at + way) for at, way in ((place.root, -place.way), (end, place.way)))
+        rounded = filleted(join([upright(half, place.root, end), rim, sheet]), self.leaf.fillet)
+        leaf = join([only(cut(rounded, [rim, sheet])), *feet])
         return stack.sheet(
             f"guide.{plate}.{number}",
             BodyKind.GUIDE,
             plate,
-            join([strip, *feet]),
+            leaf,
             (stroke, 0.0),
             (FRAME_REF, reference),
             palette.GUIDE,
-            envelope=join([swept, *feet]),
+            envelope=join([upright(half + stroke, place.root, end), leaf]),
         )
 
 
@@ -139,7 +147,7 @@ def _place(
 ) -> GuidePlace | None:
     """The place at ``x``, or None if the rim, what is ``taken`` of the plate, or its edge is in the way."""
     rules, wall, bar = stack.sizing.rules, stack.process.pin.wall, stack.sizing.rules.bar_width
-    clear, half = rules.clock_throw + rules.gap, leaf.wall / 2.0
+    clear, half = rules.clock_throw + rules.gap + leaf.fillet, leaf.wall / 2.0
     # a foot reaches as far as the leaf sways, so that a rim that rises beside it is clear of it
     foot_half = half + max(wall, clear)
     roots = [_rim(inside, x + share * foot_half, way) for share in (-1.0, -0.5, 0.0, 0.5, 1.0)]

@@ -13,10 +13,12 @@ from mdlcad.mechanics.guides import GuideLeaf, guide_findings, guide_load
 from mdlcad.mechanics.leaves import trim
 from mdlcad.mechanics.process import PlateRole, Process
 from mdlcad.parts.body import Body, BodyKind
-from mdlcad.parts.shapes import box
+from mdlcad.signoff.corners import fillet_at
 from mdlcad.signoff.drc import Finding
 from mdlcad.signoff.summary import GuidesFound
 
+_TOUCH = 0.05
+"""How far inside of an edge a line is laid, mm: less than any fillet or wall."""
 GUIDE_RULES = ("guide_missing", "guide_strain", "guide_buckling", "guide_turn")
 
 
@@ -71,13 +73,26 @@ def check_guides(
 
 
 def measured(body: Body, process: Process) -> GuideLeaf:
-    """The leaf of a guide as drawn: its wall halfway along, its length as far as that wall goes."""
+    """The leaf of a guide as drawn: its wall halfway along, its length without a foot, the fillets at its two roots.
+
+    A foot is broader than the leaf's fillets, and as high as it is.
+    """
     x_low, y_low, x_high, y_high = body.section.bounds
-    x, y = body.section.representative_point().x, (y_low + y_high) / 2.0
-    across = shapely.intersection(body.section, shapely.LineString([(x_low - 1.0, y), (x_high + 1.0, y)]))
-    wall, x = across.length, across.centroid.x
-    leaf = shapely.intersection(body.section, box(x - wall / 2.0, y_low, x + wall / 2.0, y_high))
-    foot = shapely.difference(body.section, leaf)
+    middle = shapely.intersection(body.section, _line((x_low, x_high), (y_low + y_high) / 2.0))
+    wall, x = middle.length, middle.centroid.x
+    ends, corners = [], []
+    for edge, way in ((y_low, 1.0), (y_high, -1.0)):
+        across = shapely.intersection(body.section, _line((x_low, x_high), edge + way * _TOUCH))
+        if across.length > wall + 2.0 * process.link.gap:  # a foot: the leaf's root is at its other side
+            beside = shapely.LineString([(x_low + _TOUCH, y_low - 1.0), (x_low + _TOUCH, y_high + 1.0)])
+            foot = shapely.intersection(body.section, beside).bounds
+            edge = foot[3] if way > 0.0 else foot[1]
+        ends.append(edge)
+        corners += [((x + side * wall / 2.0, edge), (side, way)) for side in (-1.0, 1.0)]
+    fillets = [fillet_at(body.section, corner, way) for corner, way in corners]
     plate = process.plate(body.plate)
-    length = y_high - y_low - (foot.bounds[3] - foot.bounds[1] if foot.area > 1e-3 else 0.0)
-    return GuideLeaf(wall, length, plate.thickness, process.material(plate).modulus)
+    return GuideLeaf(wall, ends[1] - ends[0], plate.thickness, process.material(plate).modulus, min(fillets))
+
+
+def _line(x: tuple[float, float], y: float) -> shapely.LineString:
+    return shapely.LineString([(x[0] - 1.0, y), (x[1] + 1.0, y)])

@@ -7,6 +7,7 @@ import pytest
 
 from mdlcad.mechanics import Process, load_process, process_names
 from mdlcad.mechanics.beam.large import LargeFrame, Pose
+from mdlcad.mechanics.fillet import Zone, flat_root, notch_factor, zones_of
 from mdlcad.mechanics.frame import TURN, Beam, Frame, X, Y, dof
 from mdlcad.mechanics.guides import (
     BUCKLING_SHARE,
@@ -31,13 +32,18 @@ def plate_of(process: Process) -> Plate:
     return process.plates(PlateRole.CLOCK)[0]
 
 
+def zones(leaf: GuideLeaf) -> tuple[Zone, ...]:
+    root = flat_root(leaf.fillet, 2)
+    return zones_of(leaf.length, leaf.wall, root, root)
+
+
 def frame_of(leaf: GuideLeaf) -> Frame:
     """A rigid plate on its two leaves; node 0 is the handle."""
     axial, bending = (leaf.modulus * leaf.depth * value for value in (leaf.wall, leaf.wall**3 / 12.0))
     xs = (-SPAN / 2.0, SPAN / 2.0)
     nodes = [(0.0, 0.0), *((x, HEIGHT) for x in xs), *((x, HEIGHT + leaf.length) for x in xs)]
     stiff = [Beam(0, 3, *SHEET), Beam(0, 4, *SHEET)]
-    return Frame(nodes, [Beam(1, 3, axial, bending), Beam(2, 4, axial, bending), *stiff])
+    return Frame(nodes, [Beam(1, 3, axial, bending, zones(leaf)), Beam(2, 4, axial, bending, zones(leaf)), *stiff])
 
 
 def clamped(**handle: float) -> dict[int, float]:
@@ -78,13 +84,14 @@ def test_a_leaf_at_the_end_of_its_stroke_is_strained_and_pushes_back_as_said(lea
         half = moment * leaf.wall / 2.0 / (leaf.modulus * leaf.depth * leaf.wall**3 / 12.0)
         strains.append((half + load / (leaf.modulus * leaf.depth * leaf.wall), load))
     strain, load = max(strains)
-    assert leaf.strain(STROKE, load) == pytest.approx(strain, rel=0.05)
+    # the frame's is that of bare walls, and at the root: a little more than at the fillets' ends
+    assert leaf.strain(STROKE, load) / notch_factor(leaf.wall, leaf.fillet) == pytest.approx(strain, rel=0.05)
 
 
 @pytest.mark.parametrize("load", [-15.0, 0.0, 15.0])
 def test_exudyn_agrees_on_a_leaf_that_is_bent_and_pulled(leaf: GuideLeaf, load: float) -> None:
     axial, bending = (leaf.modulus * leaf.depth * value for value in (leaf.wall, leaf.wall**3 / 12.0))
-    frame = Frame([(0.0, 0.0), (0.0, leaf.length)], [Beam(0, 1, axial, bending)])
+    frame = Frame([(0.0, 0.0), (0.0, leaf.length)], [Beam(0, 1, axial, bending, zones(leaf))])
     shortened = 0.6 * STROKE**2 / leaf.length
     held = {dof(0, direction): 0.0 for direction in (X, Y, TURN)}
     held |= {dof(1, X): STROKE, dof(1, Y): load / leaf.along - shortened, dof(1, TURN): 0.0}
@@ -126,11 +133,11 @@ def test_walls_are_those_that_other_flexures_try() -> None:
     ("span", "moment", "rules"),
     [
         (150.0, 1500.0, set()),
-        (150.0, 7000.0, {"guide_strain"}),
+        (150.0, 5000.0, {"guide_strain"}),
         (150.0, 9000.0, {"guide_strain", "guide_buckling"}),
         (150.0, 40000.0, {"guide_strain", "guide_buckling", "guide_turn"}),
         (20.0, 300.0, set()),
-        (7.0, 150.0, {"guide_turn"}),
+        (4.0, 40.0, {"guide_turn"}),
     ],
 )
 def test_every_limit_is_held(span: float, moment: float, rules: set[str]) -> None:

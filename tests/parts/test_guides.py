@@ -37,10 +37,12 @@ def test_every_clock_plate_hangs_on_two_leaves_and_is_one_piece_with_its_rim(dev
         leaf = guide_leaf(device.process, device.process.plate(plate), device.sizing.rules.clock_throw, 0.5)
         for guide in guides:
             low, bottom, high, top = guide.section.bounds
-            assert (high - low, top - bottom) == pytest.approx((leaf.wall, leaf.length), abs=1e-3)
+            root = leaf.wall + 2.0 * leaf.fillet
+            assert (high - low, top - bottom) == pytest.approx((root, leaf.length), abs=1e-3)
+            assert guide.section.area > leaf.wall * leaf.length
             for end in (sheet, rim):
                 shared = shapely.intersection(guide.section, end.section)
-                assert shared.length == pytest.approx(leaf.wall, abs=1e-3) and shared.area < 1e-6
+                assert shared.length == pytest.approx(root, abs=1e-3) and shared.area < 1e-6
         whole = shapely.union_all([body.section for body in (sheet, rim, *guides)], grid_size=1e-4)
         assert isinstance(whole, Polygon)
 
@@ -71,7 +73,7 @@ def test_guides_fit_every_outline(stack: Stack, outline: str) -> None:
         assert shapely.intersection(body.section, rim).area < 1e-3
         # it is rooted over its whole wall, and ends on the plate over its whole wall
         assert body.section.buffer(1e-3).intersection(rim).length > 2.0 * guides.leaf.wall
-        assert shapely.intersection(body.section.buffer(1e-3), plate).area == pytest.approx(5e-4, rel=0.7)
+        assert shapely.intersection(body.section.buffer(1e-3), plate).area > 1e-3 * guides.leaf.wall
         assert body.envelope is not None
         moving = shapely.difference(body.envelope, body.section.buffer(rules.clock_throw + 1e-3))
         assert moving.area < 1e-2

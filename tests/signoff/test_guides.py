@@ -54,5 +54,7 @@ def test_what_is_measured_is_what_was_drawn(device: Device, bodies: dict[str, Bo
         if body.kind is BodyKind.GUIDE:
             leaf = measured(body, device.process)
             low, bottom, high, top = body.section.bounds
-            assert (leaf.wall, leaf.length) == pytest.approx((high - low, top - bottom), abs=1e-3)
+            fillet = device.process.machine.fillet
+            assert leaf.fillet == pytest.approx(fillet, abs=2e-3)
+            assert (leaf.wall, leaf.length) == pytest.approx((high - low - 2.0 * fillet, top - bottom), abs=1e-3)
             assert leaf.depth == device.process.plate(body.plate).thickness
