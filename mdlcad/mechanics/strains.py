@@ -21,7 +21,7 @@ from mdlcad.mechanics.leaves import LeafKind, LeafSize, large_strain
 from mdlcad.mechanics.process import PlateRole, Process
 from mdlcad.mechanics.series import SeriesSpring
 from mdlcad.mechanics.sizes import BiasSize, CouplerSize
-from mdlcad.mechanics.unit import UnitLaw, clock_swing
+from mdlcad.mechanics.unit import UnitLaw, beam_roots, clock_swing
 from mdlcad.network.model import Mass, Network
 from mdlcad.proof.prove import SENSOR_FORCE
 
@@ -122,7 +122,8 @@ def check_strain(
     values = [("strain", f"unit.{name}", strain, limit, "of its beams") for name, strain in units.beams.items()]
     values.append(("strain", "unit.series", units.settled, limit, "of the series leaves with settled shuttles"))
     if fillet:
-        beam = notch_factor(process.unit.beam_wall, fillet)
+        sides = min(root.sides for beam in range(process.unit.beams) for root in beam_roots(process, beam))
+        beam = notch_factor(process.unit.beam_wall, fillet, sides)
         values += [
             ("strain_root", f"unit.{name}", beam * strain, material.strain_peak, "in a fillet of its beams")
             for name, strain in units.beams.items()

@@ -98,11 +98,15 @@ def test_a_meanders_fillets_make_it_stiffer() -> None:
     assert 1.01 < blunt / sharp < 1.1
 
 
-def test_notch_factor_is_that_of_the_charts() -> None:
-    """Read off Peterson's chart for a flat bar with shoulder fillets in bending, D / d = 3."""
-    for ratio, factor in ((0.1, 1.95), (0.2, 1.55), (0.3, 1.36), (0.5, 1.2)):
-        assert notch_factor(1.0, ratio) == pytest.approx(factor, rel=0.05)
+def test_notch_factor_is_that_of_the_handbook() -> None:
+    """Roark's table 17.1, square shoulder with fillet in bending, for a shoulder three times as high as the wall."""
+    for ratio, factor in ((0.1, 1.919), (0.2, 1.559), (0.4, 1.292), (0.6, 1.184)):
+        assert notch_factor(1.0, ratio) == pytest.approx(factor, rel=0.1)
     assert notch_factor(1.0, 0.0) == math.inf
+    radii = [0.01, 0.05, 0.099, 0.101, 0.3, 3.0]
+    found = [notch_factor(1.0, radius, 1) for radius in radii]
+    assert found == sorted(found, reverse=True)
+    assert found[-1] == 1.0
 
 
 @pytest.mark.parametrize("name", process_names())
