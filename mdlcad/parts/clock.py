@@ -134,7 +134,9 @@ def clock_plates(
             bodies += guides.bodies(stack, plate, own)
         try:
             whole = only(without_thin(cut(join([inner, tongue]), away), stack.process.pin.wall))
-            section, held = only(whole.intersection(inner)), only(shapely.difference(whole, inner, grid_size=GRID))
+            # along a slanted edge rounding leaves slivers between the two
+            outside = without_thin(shapely.difference(whole, inner, grid_size=GRID), stack.process.pin.wall)
+            section, held = only(whole.intersection(inner)), only(outside)
         except ValueError as error:
             raise UsageError(f"the boundary is so narrow that the clock plate {plate} falls apart: {error}") from error
         bodies.append(
