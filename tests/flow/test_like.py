@@ -102,3 +102,19 @@ def test_the_papers_library_keeps_places_on_the_grid(tmp_path):
     after = built(tmp_path / "after", edited, *options, "--like", str(first))
     like = artefact(after, "report")["like"]
     assert like["moved"] == 0 and like["kept"] > 10
+
+
+@pytest.mark.long
+def test_one_changed_condition_in_the_maze_moves_a_tenth_at_most(tmp_path):
+    program = (ROOT / "examples" / "mazerobot.mdl").read_text(encoding="utf-8")
+    edits = {
+        "last": ("wall_back,  LEFT,  wall_left,  UP);", "wall_back,  LEFT,  wall_left,  LEFT);"),
+        "free": ("UP,    wall_front, RIGHT, wall_right, DOWN);", "UP,    wall_front, RIGHT, 1'b0, DOWN);"),
+    }
+    first = built(tmp_path / "maze", program)
+    for name, (old, new) in edits.items():
+        assert program.count(old) == 1
+        after = built(tmp_path / name, program.replace(old, new), "--like", str(first))
+        like = artefact(after, "report")["like"]
+        assert like["changed"] + like["new"] <= 4, name
+        assert like["moved"] <= 0.1 * (like["kept"] - like["changed"]), name
