@@ -15,6 +15,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import islice, product
 from statistics import median
+from typing import NamedTuple
 
 from mdlcad.mapping.cell_library import Library
 from mdlcad.mapping.circuit import LOGIC, REACH, Circuit, Limits, without_idle
@@ -55,8 +56,16 @@ class Patch:
     gates: tuple[Gate, ...]
 
 
-# couplings out of reach, posts too many, masses without room, whether it leaves its column, length in rows, weights
-_Rank = tuple[int, ...]
+class _Rank(NamedTuple):
+    """What speaks against a patch, the worst first: posts too many (which no layout can hold), couplings out of reach,
+    masses without room, whether its mass leaves its column, length in rows, weights."""
+
+    posts: int
+    far: int
+    full: int
+    leaves: int
+    length: int
+    weights: int
 
 
 def find_patches(circuit: Circuit, goals: tuple[Goal, ...], library: Library) -> Circuit | None:
@@ -123,12 +132,8 @@ def _ranked(
             patches += islice(_patches(circuit, finder, mass, need, new), MOST_FOUND)
             left += max(0, finder.effort)
     light = sorted(patches, key=lambda patch: (_weight(circuit, patch), str(patch)))[:MOST_RANKED]
-    return [
-        patch
-        for _, patch in sorted(
-            ((_rank(circuit, patch), patch) for patch in light), key=lambda item: (item[0], str(item[1]))
-        )
-    ][:MOST_TRIED]
+    ranked = sorted(((_rank(circuit, patch), patch) for patch in light), key=lambda item: (item[0], str(item[1])))
+    return [patch for rank, patch in ranked if rank.posts == 0][:MOST_TRIED]
 
 
 def _weight(circuit: Circuit, patch: Patch) -> int:
@@ -228,7 +233,7 @@ def _rank(circuit: Circuit, patch: Patch) -> _Rank:
     far, full, leaves = _seating(circuit, made, patch.mass)
     over, rockers = min(_parts(circuit, made, signs) for signs in _signs(made))
     weights = sum(wire.function.inputs for wire in made.values())
-    return far, over, full, leaves, _length(circuit, made, patch.mass) + ROCKER * rockers, weights
+    return _Rank(over, far, full, leaves, _length(circuit, made, patch.mass) + ROCKER * rockers, weights)
 
 
 def _sources(circuit: Circuit, mass: str) -> tuple[str, ...]:
