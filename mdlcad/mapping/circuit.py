@@ -10,6 +10,7 @@ from mdlcad.mapping.wired import Wires, arrivals, ring_of
 from mdlcad.network.model import MassKind
 
 LOGIC = (MassKind.GATE, MassKind.BUFFER)
+PHASES = 3
 REACH = 1
 """Columns that a coupling spans at most."""
 
