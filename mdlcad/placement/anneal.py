@@ -88,15 +88,21 @@ def _propose(p: Problem, s: State, mass: int, random: npt.NDArray[np.uint64]) ->
 
 
 @part
-def _troubled(p: Problem, s: State, tracks: Floats, found: Ints, seen: Ints) -> int:
-    """List the masses that broken rules are about: their trunks share a band with one, or they meet a row with one."""
+def _troubled(p: Problem, s: State, tracks: Floats, only: int, found: Ints, seen: Ints) -> int:
+    """List the masses that broken rules are about: their trunks share a band with one, or they meet a row with one.
+
+    Of channel ``only``, or of all channels and tabs if that is -1.
+    """
     n = 0
     seen[:] = 0
+    bands = len(tracks) // s.row.shape[0]
     for band in range(len(tracks)):
-        if tracks[band] > 1e-6:
+        if tracks[band] > 1e-6 and (only < 0 or band // bands == only):
             for i in range(s.trunk_count[band]):
                 n = _note(s.trunks[band, i] // 2, found, seen, n)
     for channel in range(s.row.shape[0]):
+        if only >= 0 and channel != only:
+            continue
         for row in range(s.row.shape[1]):
             t = s.row[channel, row]
             if row_cost(t, p.is_open[channel, row], int(p.sizes[2])) < 1e-6:
@@ -107,6 +113,13 @@ def _troubled(p: Problem, s: State, tracks: Floats, found: Ints, seen: Ints) -> 
                 column = channel - 1 + side
                 if 0 <= column < p.slot_at.shape[0] and p.slot_at[column, row] >= 0:
                     n = _note(s.mass_at[p.slot_at[column, row]], found, seen, n)
+    for tab in range(len(p.tab) if only < 0 else 0):
+        way = p.way[tab, p.slot[s.mass[p.tab[tab, 3], SLOT], 0]]
+        for column in range(way[1], way[2] + 1 if way[0] >= 0 else way[1]):
+            for row in range(p.tab[tab, 0], p.tab[tab, 1] + 1):
+                slot = p.slot_at[column, row]
+                if slot >= 0 and s.mass_at[slot] >= 0:
+                    n = _note(s.mass_at[slot], found, seen, _note(p.tab[tab, 3], found, seen, n))
     return n
 
 
@@ -116,6 +129,34 @@ def _note(mass: int, found: Ints, seen: Ints, n: int) -> int:
         return n
     seen[mass], found[n] = 1, mass
     return n + 1
+
+
+@part
+def _counted(p: Problem, s: State, nets: Ints) -> Floats:
+    """Tally everything afresh; what the trunks of every band cost."""
+    s.row[:], s.trunk_count[:] = 0, 0
+    for mass in range(len(s.mass)):
+        nets[0] = mass
+        tally(p, s, nets, 1, mass, -1, 1)
+    known = np.zeros(len(s.trunk_count))
+    for band in range(len(known)):
+        s.dirty[band] = 0
+        known[band] = track_cost(p, s, band)
+    return known
+
+
+@kernel
+def channel_costs(p: Problem, s: State) -> Floats:
+    """What the broken rules of every channel cost: of its trunks and its rows."""
+    nets = np.arange(max(len(s.mass), 4 * DEEP)).astype(np.int32)
+    known = _counted(p, s, nets)
+    costs = np.zeros(s.row.shape[0])
+    for channel in range(len(costs)):
+        bands = len(known) // len(costs)
+        costs[channel] = np.sum(known[channel * bands : (channel + 1) * bands])
+        for row in range(s.row.shape[1]):
+            costs[channel] += row_cost(s.row[channel, row], p.is_open[channel, row], int(p.sizes[2]))
+    return costs
 
 
 @kernel
@@ -128,10 +169,12 @@ def anneal(
     cold: float,
     fixed: bool,
     focus: float = 0.0,
+    only: int = -1,
 ) -> float:
     """Anneal in place; ``fixed`` keeps the slots and changes sides only. Returns the cost of broken rules that is left.
 
-    A share ``focus`` of the moves is on masses that broken rules are about.
+    A share ``focus`` of the moves is on masses that broken rules are about; of channel ``only``, if that is not -1, and
+    then it ends when that channel has none.
 
     Ends as soon as no rule is broken, but not in the hot first half, so that wires shrink too.
 
@@ -140,20 +183,15 @@ def anneal(
     """
     masses, couplings = len(s.mass), len(p.coupling)
     nets = np.arange(max(masses, 4 * DEEP)).astype(np.int32)
-    s.row[:], s.trunk_count[:] = 0, 0
-    for mass in range(masses):
-        nets[0] = mass
-        tally(p, s, nets, 1, mass, -1, 1)
-    known = np.zeros(len(s.trunk_count))
-    for channel in range(len(known)):
-        s.dirty[channel] = 0
-        known[channel] = track_cost(p, s, channel)
+    known = _counted(p, s, nets)
     new = known.copy()
     everyone = np.arange(masses).astype(np.int32)
     found, seen, troubled = everyone.copy(), np.zeros(masses, np.int32), 0
     for move in range(moves):
         if focus > 0 and move % REFRESH == 0:
-            troubled = _troubled(p, s, known, found, seen)
+            troubled = _troubled(p, s, known, only, found, seen)
+            if only >= 0 and troubled == 0:
+                break
         if move % 1000 == 0 and 2 * move > moves and hard_cost(p, s, known, everyone) < 1e-6:
             break
         heat = hot * (cold / hot) ** (move / moves)

@@ -1,63 +1,123 @@
 """Placement of networks too large to be annealed from a random start.
 
-The start (``levels``) is nearly legal, so what follows is warm, not hot: sides alone; slots, with the trunks of a
-channel packed in bands of rows; slots again with whole channels packed, which is what a channel's tracks really are,
-half of the moves on masses that broken rules are about; and then only those, until no rule is broken.
+The start (``levels``) is nearly legal, so what follows is warm, not hot: slots, with the trunks of a channel packed in
+bands of rows; slots again with whole channels packed, which is what a channel's tracks really are, most of the moves on
+masses that broken rules are about; and then only those, until no rule is broken.
+
+Where there is room, units stand like the black squares of a chessboard: no row of a channel then has a hub on either
+side, which is what asks most often for an order of trunks, and such orders make rings.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import numpy.typing as npt
 
-from mdlcad.placement.anneal import anneal
+from mdlcad.placement.anneal import HOME_SIDE, anneal, channel_costs
+from mdlcad.placement.costs import BIAS_SIDE, SLOT
 from mdlcad.placement.lattice import Lattice
-from mdlcad.placement.levels import slots_by_levels
-from mdlcad.placement.problem import Problem
-from mdlcad.placement.state import State, start
+from mdlcad.placement.levels import start_by_levels
+from mdlcad.placement.problem import Ints, Problem
+from mdlcad.placement.state import COLUMN, State, start
 
 BAND = 24
 """Most rows whose trunks are packed together at first, so that a move costs no more in a large device; what is legal in
 every band need not be so in all."""
+SQUARES = 0.85
+"""Share of the black squares that may be taken; a network that needs more takes any slot."""
 COLD = 0.2
-SIDE_MOVES, SIDE_HOT = 100, 8.0
+ATTEMPTS, FAR_SEED = 3, 1_000_003
+"""Starts to try, and how far their seeds are apart: not the next ones, which the caller may try."""
 BAND_MOVES, BAND_HOT, BAND_FOCUS = 300, 0.7, 0.5
 WHOLE_MOVES, WHOLE_HOT, WHOLE_FOCUS = 80, 0.7, 0.8
 """Moves a mass, first heat, and share of the moves that are on troubled masses."""
-MEND_MOVES, MEND_HEATS = 30_000, (4.0, 2.0, 8.0) * 6
-"""Moves of a round on troubled masses alone, and the first heat of every round."""
+HOLD = 3.0
+"""What it costs at first to leave the columns and sides of the start, where no hub holds too much."""
+LIGHT = 0.3
+"""What a trunk without a track weighs at first beside a hub that holds too much: it is mended more easily."""
+MEND_ROUNDS, MEND_MOVES, MEND_HEATS = 60, 10_000, (2.0, 1.0, 4.0)
+"""Rounds on the masses of one troubled channel alone, their moves, and their first heats, one after the other."""
 
 
 def place_large(problem: Problem, lattice: Lattice, seed: int, moves_per_mass: int) -> tuple[State, float]:
     """A state with few broken rules or none, and their cost. Same arguments, same result."""
+    best = _attempt(problem, lattice, seed, moves_per_mass)
+    for turn in range(1, ATTEMPTS):
+        if best[1] < 1e-6:
+            break
+        best = min(best, _attempt(problem, lattice, seed + turn * FAR_SEED, moves_per_mass), key=lambda found: found[1])
+    return best
+
+
+def _attempt(problem: Problem, lattice: Lattice, seed: int, moves_per_mass: int) -> tuple[State, float]:
     masses = len(problem.mass) - 1
-    state, source = start(problem, slots_by_levels(problem, lattice, seed), seed, BAND)
-    anneal(problem, state, source, SIDE_MOVES * masses, SIDE_HOT, COLD, True)
-    moves = min(moves_per_mass, BAND_MOVES) * masses
-    anneal(problem, state, source, moves, BAND_HOT, COLD, False, BAND_FOCUS)
-    state = _whole(problem, state, seed)
+    squares = _squares(lattice, masses)
+    part = _only(problem, squares)
+    begun = start_by_levels(part, replace(lattice, slots=tuple(lattice.slots[slot] for slot in squares.tolist())), seed)
+    state, source = careful(part, begun.slot, begun.side, begun.bias, seed, BAND)
+    state.careful[0] = LIGHT
+    _hold(part, state, HOLD)
+    anneal(part, state, source, min(moves_per_mass, BAND_MOVES) * masses, BAND_HOT, COLD, False, BAND_FOCUS)
+    state, _ = careful(part, state.mass[:, 0], state.side, state.mass[:, 1], seed)
+    _hold(part, state, HOLD)
     moves = min(moves_per_mass, WHOLE_MOVES) * masses
-    cost = anneal(problem, state, source, moves, WHOLE_HOT, COLD, False, WHOLE_FOCUS)
-    return state, mend(problem, state, source, cost, False)
+    cost = float(anneal(part, state, source, moves, WHOLE_HOT, COLD, False, WHOLE_FOCUS))
+    _hold(part, state, 0.0)
+    mend(part, state, source, cost, False)
+    whole, source = careful(problem, squares[state.mass[:, 0]], state.side, state.mass[:, 1], seed)
+    return whole, float(anneal(problem, whole, source, 0, WHOLE_HOT, COLD, False))
+
+
+def careful(
+    problem: Problem, slot: Ints, side: Ints, bias: Ints, seed: int, band: int | None = None
+) -> tuple[State, npt.NDArray[np.uint64]]:
+    """A state with those slots by mass, channel sides by coupling, leaf sides by mass, and a seeded random source."""
+    state, source = start(problem, slot.copy(), seed, band)
+    state.careful[0] = 1
+    state.side[:], state.mass[:, 1] = side, bias
+    return state, source
 
 
 def mend(problem: Problem, state: State, source: npt.NDArray[np.uint64], cost: float, fixed: bool) -> float:
-    """Anneal masses in trouble alone, round by round, keeping what is no worse; ``fixed`` keeps the slots. The cost."""
-    for heat in MEND_HEATS:
+    """Anneal one troubled channel after the other, keeping what is no worse; ``fixed`` keeps the slots. The cost."""
+    last = -1
+    for turn in range(MEND_ROUNDS):
         if cost < 1e-6:
             break
+        troubled = np.flatnonzero(channel_costs(problem, state) > 1e-6).tolist()
+        # what no channel is to blame for is tabs, or couplings that reach too far
+        last = next((channel for channel in troubled if channel > last), troubled[0] if troubled else -1)
+        heat = MEND_HEATS[turn % len(MEND_HEATS)]
         before = [array.copy() for array in (state.mass, state.mass_at, state.side)]
-        after = anneal(problem, state, source, MEND_MOVES, heat, COLD, fixed, 1.0)
+        after = float(anneal(problem, state, source, MEND_MOVES, heat, COLD, fixed, 1.0, last))
         if after > cost:
             for array, old in zip((state.mass, state.mass_at, state.side), before, strict=True):
                 array[:] = old
         else:
             cost = after
-    return float(cost)
+    return cost
 
 
-def _whole(problem: Problem, state: State, seed: int) -> State:
-    """The same places and sides, with every channel packed as a whole."""
-    whole, _ = start(problem, state.mass[:, 0].copy(), seed)
-    whole.mass[:], whole.side[:], whole.price[:] = state.mass, state.side, state.price
-    return whole
+def _hold(problem: Problem, state: State, price: float) -> None:
+    """Let it cost ``price`` to leave the columns and sides that masses, couplings and leaves have now."""
+    masses, couplings = len(state.mass), len(state.side)
+    state.home[:masses, SLOT] = COLUMN - problem.slot[state.mass[:, SLOT], 0]
+    state.home[:masses, BIAS_SIDE] = state.mass[:, BIAS_SIDE]
+    state.home[:couplings, HOME_SIDE] = state.side
+    state.price[:] = price
+
+
+def _squares(lattice: Lattice, masses: int) -> Ints:
+    """The slots to use: those of a chessboard's black squares, or all if these are too few."""
+    black = [index for index, (column, row) in enumerate(lattice.slots) if (column + row) % 2 == 0]
+    return np.array(black if masses <= SQUARES * len(black) else range(len(lattice.slots)), np.int32)
+
+
+def _only(problem: Problem, slots: Ints) -> Problem:
+    """The problem with no other slots than ``slots``."""
+    slot_at = np.full_like(problem.slot_at, -1)
+    for index, (column, row) in enumerate(problem.slot[slots].tolist()):
+        slot_at[column, row] = index
+    return problem._replace(slot=problem.slot[slots], slot_at=slot_at)

@@ -11,24 +11,39 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from mdlcad.placement.chance import random_source
+from mdlcad.placement.costs import HARD
 from mdlcad.placement.crossings import settle_columns
 from mdlcad.placement.lattice import Lattice
-from mdlcad.placement.problem import Ints, Problem
+from mdlcad.placement.problem import Floats, Ints, Problem
 
 STRIP = 4
 """Columns of a strip, about: a strip's levels must not be taller than the strip is wide by far."""
-SETTLE, SETTLE_HOT, SETTLE_COLD = 1000, 3.0, 0.2
+SETTLE, SETTLE_HOT, SETTLE_COLD = 1000, 10.0, 0.5
 """Moves a mass of the annealing of columns, and its heats."""
 CELL, CROWDED = 12, 1.15
 """Rows of a cell; how much fuller than the average cell one may be."""
+MEND_ROUNDS, MEND, MEND_HOT, MEND_REACH = 30, 300, (6.0, 10.0), (2, 3, 4, 6, 8)
+"""Times that masses around hubs that hold too much are annealed again; moves a mass; first heats; how many couplings
+away they may be, one time after the other."""
 _SWEEPS = 12
 
 
-def slots_by_levels(problem: Problem, lattice: Lattice, seed: int) -> Ints:
-    """A slot for every mass."""
+@dataclass(frozen=True, slots=True)
+class Start:
+    """A slot for every mass, the channel side of every coupling, the side of every bias leaf."""
+
+    slot: Ints
+    side: Ints
+    bias: Ints
+
+
+def start_by_levels(problem: Problem, lattice: Lattice, seed: int) -> Start:
+    """Slots and sides that break few rules or none, but for tracks."""
     masses = len(problem.mass) - 1
     beside = _neighbours(problem, masses)
     levels = _levels(problem, beside, masses)
@@ -36,15 +51,57 @@ def slots_by_levels(problem: Problem, lattice: Lattice, seed: int) -> Ints:
     column, order = np.zeros(masses, np.int32), np.zeros(masses)
     for rank, (level, (at, down)) in enumerate(zip(levels, path, strict=True)):
         column[level], order[level] = at, -rank if down else rank
-    height = _heights(_stand(_fitted(column, lattice), order, beside, lattice), lattice)
+    column = _fitted(column, lattice)
+    height = _heights(_stand(column, order, beside, lattice), lattice)
     cell = (height // CELL).astype(np.int32)
     room = np.zeros((len(lattice.column_x), int(np.max(cell)) + 1))
     for at, row in lattice.slots:
         room[at, min(row // CELL, room.shape[1] - 1)] += CROWDED * masses / len(lattice.slots)
+    side, bias = np.zeros(len(problem.coupling), np.int32), np.zeros(masses, np.int32)
+    _settle(problem, lattice, beside, (column, side, bias), cell, room, seed)
+    return Start(_stand(column, height, beside, lattice), side, bias)
+
+
+def _settle(
+    problem: Problem,
+    lattice: Lattice,
+    beside: list[list[int]],
+    chosen: tuple[Ints, Ints, Ints],
+    cell: Ints,
+    room: Floats,
+    seed: int,
+) -> None:
+    """Anneal columns and sides (of couplings and leaves), then those around hubs that hold too much, in place."""
+    masses = len(chosen[0])
     into = np.argsort(problem.coupling[:, 1], kind="stable").astype(np.int32)
-    moves, source = SETTLE * masses, random_source(seed)
-    settle_columns(problem, into, column, cell, room, source, moves, SETTLE_HOT, SETTLE_COLD)
-    return _stand(_fitted(column, lattice), height, beside, lattice)
+    slots = np.bincount([at for at, _ in lattice.slots], minlength=len(lattice.column_x)).astype(np.int32)
+    source, hub = random_source(seed), np.zeros(masses)
+
+    def settle(among: Ints, exact: bool, moves: int, hot: float) -> float:
+        moves *= len(among)
+        return float(
+            settle_columns(
+                problem, into, *chosen, cell, room, slots, among, exact, hub, source, moves, hot, SETTLE_COLD
+            )
+        )
+
+    all_masses = np.arange(masses, dtype=np.int32)
+    settle(all_masses, False, SETTLE, SETTLE_HOT)
+    cost = settle(all_masses, True, 0, SETTLE_HOT)
+    for turn in range(MEND_ROUNDS):
+        near = set(np.flatnonzero(hub >= HARD).tolist())
+        if not near:
+            return
+        for _ in range(MEND_REACH[turn % len(MEND_REACH)]):
+            near |= {other for mass in near for other in beside[mass]}
+        held: tuple[Ints | Floats, ...] = (*chosen, hub)
+        before = [array.copy() for array in held]
+        after = settle(np.array(sorted(near), np.int32), True, MEND, MEND_HOT[turn % len(MEND_HOT)])
+        if after > cost:
+            for array, old in zip(held, before, strict=True):
+                np.copyto(array, old)
+        else:
+            cost = after
 
 
 def _neighbours(problem: Problem, masses: int) -> list[list[int]]:

@@ -26,11 +26,26 @@ LARGE_SIDE_MOVES = 200
 
 
 @dataclass(frozen=True, slots=True)
+class Sides:
+    """Side (0 left, 1 right channel of the source's column) of every realisable coupling, by name, and the side of
+    every bias leaf (0 left, 1 right of its hub), by mass."""
+
+    couplings: dict[str, int]
+    biases: dict[str, int]
+    cost: float
+
+
+@dataclass(frozen=True, slots=True)
 class PlaceResult:
-    """A placement, and the cost of the rules that it is known to break (0: legal tracks exist)."""
+    """A placement, and the cost of the rules that it is known to break (0: legal tracks exist).
+
+    Attributes:
+        sides: those that it was found with, which routing need not choose anew; None if it is to choose them.
+    """
 
     placement: Placement
     cost: float
+    sides: Sides | None = None
 
 
 def place(
@@ -40,9 +55,10 @@ def place(
     problem = build(network, lattice, rules)
     if len(network.masses) > LARGE:
         state, cost = place_large(problem, lattice, seed, moves_per_mass)
-    else:
-        state, source = start(problem, np.array(_start(problem, lattice, len(network.masses), seed), np.int32), seed)
-        cost = anneal(problem, state, source, moves_per_mass * len(network.masses), HOT, COLD, False)
+        placement = placement_of(network, lattice, state.mass[:, 0], seed)
+        return PlaceResult(placement, cost, sides_of(network, placement, rules, state, cost))
+    state, source = start(problem, np.array(_start(problem, lattice, len(network.masses), seed), np.int32), seed)
+    cost = anneal(problem, state, source, moves_per_mass * len(network.masses), HOT, COLD, False)
     return PlaceResult(placement_of(network, lattice, state.mass[:, 0], seed), float(cost))
 
 
@@ -77,16 +93,6 @@ def _start(problem: Problem, lattice: Lattice, masses: int, seed: int) -> list[i
     return [free[column].pop() for column in columns]
 
 
-@dataclass(frozen=True, slots=True)
-class Sides:
-    """Side (0 left, 1 right channel of the source's column) of every realisable coupling, by name, and the side of
-    every bias leaf (0 left, 1 right of its hub), by mass."""
-
-    couplings: dict[str, int]
-    biases: dict[str, int]
-    cost: float
-
-
 def choose_sides(network: Network, placement: Placement, lattice: Lattice, rules: LayoutRules, seed: int) -> Sides:
     """Which channel serves every coupling and bias leaf, for masses that stay where they are."""
     problem = build(network, lattice, rules)
@@ -94,6 +100,8 @@ def choose_sides(network: Network, placement: Placement, lattice: Lattice, rules
     where = {placed.mass: index[placed.column, placed.row] for placed in placement.masses}
     slots, masses = np.array([where[mass.name] for mass in network.masses], np.int32), len(network.masses)
     state, source = start(problem, slots, seed)
+    if masses > LARGE:
+        state.careful[0] = 1.0
     moves = LARGE_SIDE_MOVES if masses > LARGE else SIDE_MOVES_PER_MASS
     cost = anneal(problem, state, source, moves * masses, HOT, COLD, True)
     if masses > LARGE:

@@ -31,6 +31,9 @@ class State(NamedTuple):
             packing tracks; an order is (first, second, order before it with the same first or -1).
         home: (max(M, J), 3) by mass the slot (or column, see ``COLUMN``) and bias side, by coupling the channel side
             that it should keep, or -1.
+        careful: (1,) more than 0 if trunks are packed alike in whatever order they were registered, and rings broken
+            one by one, which large networks need to be told what is left of them; and then, what a trunk without a
+            track weighs beside other broken rules.
         price: what it costs a mass to leave its home slot, and a leaf or coupling its home side.
     """
 
@@ -52,6 +55,7 @@ class State(NamedTuple):
     alive: Ints
     orders: Ints
     home: Ints
+    careful: Floats
     price: Floats
 
 
@@ -89,6 +93,7 @@ def start(problem: Problem, slot_of: Ints, seed: int, band: int | None = None) -
         alive=np.zeros(masses + 1, np.int32),
         orders=np.zeros((min(rows, together) * 3 * DEEP * DEEP, 3), np.int32),
         home=np.full((max(masses, len(problem.coupling)), 3), -1, np.int32),
+        careful=np.zeros(1),
         price=np.zeros(2),
     )
     return state, random_source(seed)

@@ -11,6 +11,9 @@ from mdlcad.placement.costs import HARD, POST_A, VIA_A, VIA_B
 from mdlcad.placement.problem import Problem
 from mdlcad.placement.state import State
 
+LONGEST = 8
+"""Trunks that a limit is passed back along, where packing is careful."""
+
 
 @inlined
 def _ask(s: State, first: int, second: int, n: int) -> int:
@@ -66,9 +69,15 @@ def track_cost(p: Problem, s: State, band: int) -> float:
             due[i] = at[i]
     low = band % bands * size
     asked = _orders(s, band // bands, low, min(rows, low + size))
-    for _ in range(2):
+    careful = s.careful[0] != 0
+    for _ in range(LONGEST if careful else 2):
+        passed = False
         for k in range(asked):
-            due[s.orders[k, 0]] = min(due[s.orders[k, 0]], due[s.orders[k, 1]] - pitch)
+            limit = due[s.orders[k, 1]] - pitch
+            if limit < due[s.orders[k, 0]]:
+                due[s.orders[k, 0]], passed = limit, True
+        if not passed:
+            break
     alive, left = s.alive, n
     for i in range(n):
         alive[i] = i
@@ -77,13 +86,19 @@ def track_cost(p: Problem, s: State, band: int) -> float:
         for k in range(left):
             if waits[alive[k]] == 0:
                 first = min(first, at[alive[k]])
-        if first > 1e17:
-            # nets that wait for one another in a ring
-            return cost + HARD * left
+        ring = first > 1e17  # nets that wait for one another
+        if ring:
+            if not careful:
+                return cost + HARD * left
+            cost += HARD
+            for k in range(left):
+                first = min(first, at[alive[k]])
         best, where = -1, 0
         for k in range(left):
             i = alive[k]
-            if waits[i] == 0 and at[i] < first + pitch / 2 and (best < 0 or due[i] < due[best]):
+            if (ring or waits[i] == 0) and at[i] < first + pitch / 2 and (best < 0 or due[i] <= due[best]):
+                if best >= 0 and due[i] == due[best] and (not careful or nets[i] > nets[best]):
+                    continue
                 best, where = i, k
         late = at[best] - s.window[nets[best], 1]
         if late > 1e-6 and s.window[nets[best], 0] <= s.window[nets[best], 1]:
@@ -101,4 +116,4 @@ def track_cost(p: Problem, s: State, band: int) -> float:
             # those that share a row overlap, so they have been moved on already
             waits[s.orders[k, 1]] -= 1
             k = s.orders[k, 2]
-    return cost
+    return cost * s.careful[0] if careful else cost

@@ -242,7 +242,9 @@ class _Search:
             if result.cost > 0:
                 continue
             try:
-                layout = route(self.network, result.placement, self.rules, self.seed + offset, self.judge)
+                layout = route(
+                    self.network, result.placement, self.rules, self.seed + offset, self.judge, sides=result.sides
+                )
             except JamError as error:
                 self.reason = str(error)
                 self.judged += error.judged

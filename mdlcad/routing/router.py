@@ -9,7 +9,7 @@ from mdlcad.network.model import Network
 from mdlcad.placement.grid import inside, terminals
 from mdlcad.placement.lattice import Lattice
 from mdlcad.placement.placement import Placement
-from mdlcad.placement.placer import choose_sides
+from mdlcad.placement.placer import Sides, choose_sides
 from mdlcad.routing.assemble import assemble
 from mdlcad.routing.channel import ChannelRoute
 from mdlcad.routing.gather import channels
@@ -49,11 +49,12 @@ def route(
     seed: int,
     judge: Judge = no_objection,
     keeper: Keeper | None = None,
+    sides: Sides | None = None,
 ) -> Layout:
     """Tracks and plates for every carrier, coupler, bias leaf and tab.
 
     Couplings that mechanics has no linkage for end in ``Layout.unrealised``. With a ``keeper`` all is routed as it was
-    in the earlier layout, where that is still possible.
+    in the earlier layout, where that is still possible. ``sides`` are tried first, if the placer has given them.
 
     Raises:
         JamError: a channel has no legal routing (or none was found), and then it names the channel and its fullest
@@ -64,8 +65,8 @@ def route(
     turns = range(SIDE_TRIES) if keeper is None else keeper.turns(placement, lattice, rules, SIDE_TRIES)
     choose, solve_channel = (choose_sides, solve_any) if keeper is None else (keeper.sides, keeper.solve)
     for attempt, turn in enumerate(turns):
-        sides = choose(network, placement, lattice, rules, seed + attempt)
-        work = channels(network, placement, lattice, sides, rules, turn)
+        chosen = sides if sides and not attempt else choose(network, placement, lattice, rules, seed + attempt)
+        work = channels(network, placement, lattice, chosen, rules, turn)
         routes: dict[int, ChannelRoute] = {}
         again = set(range(len(work)))
         for _ in range(ROUNDS):

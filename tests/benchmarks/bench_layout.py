@@ -76,7 +76,7 @@ def measure(network: Network, fill: float) -> dict[str, Any]:
     middle = time.process_time()
     words, findings = "", -1
     try:
-        layout = route(network, placed.placement, rules, 1)
+        layout = route(network, placed.placement, rules, 1, sides=placed.sides)
     except SignoffError as error:
         words = str(error)
     spent = time.process_time() - middle

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mdlcad.placement.lattice import Lattice, lattices, place_ports
-from mdlcad.placement.levels import slots_by_levels
+from mdlcad.placement.levels import start_by_levels
 from mdlcad.placement.problem import build
 from tests.placement.networks import MAZE_PORTS, SQUARE, maze, pom_rules
 from tests.placement.tiles import tiled
@@ -22,7 +22,7 @@ def lattice(scale: float) -> Lattice:
 @pytest.fixture(scope="module", params=(14.0, 20.0))
 def start(request: pytest.FixtureRequest) -> tuple[Lattice, np.ndarray]:
     found = lattice(request.param)
-    return found, slots_by_levels(build(LARGE, found, pom_rules(LARGE)), found, 1)
+    return found, start_by_levels(build(LARGE, found, pom_rules(LARGE)), found, 1).slot
 
 
 def test_everyone_has_a_slot_of_his_own(start: tuple[Lattice, np.ndarray]) -> None:
@@ -34,7 +34,7 @@ def test_everyone_has_a_slot_of_his_own(start: tuple[Lattice, np.ndarray]) -> No
 
 def test_no_coupling_is_more_than_a_column_too_far() -> None:
     found = lattice(20.0)
-    slots = slots_by_levels(build(LARGE, found, pom_rules(LARGE)), found, 1)
+    slots = start_by_levels(build(LARGE, found, pom_rules(LARGE)), found, 1).slot
     column = {mass.name: found.slots[int(slot)][0] for mass, slot in zip(LARGE.masses, slots, strict=True)}
     assert max(abs(column[item.source] - column[item.target]) for item in LARGE.couplings) <= 1
 
