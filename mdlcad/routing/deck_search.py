@@ -27,6 +27,7 @@ from mdlcad.routing.decks import EMPTY, joined_layout, joined_placement
 from mdlcad.routing.driver import (
     FAR,
     HOPELESS,
+    QUICK,
     SCREEN,
     SLACK,
     SMALLEST,
@@ -47,8 +48,10 @@ TURNS = 4
 """Times that both decks are annealed from one start, each time the other one first."""
 WANTED = HARD / 2
 """What it costs to leave a slot that the other deck would like."""
-SHAPES, SEEDS = 3, 2
+SHAPES, SEEDS = 3, 4
 """How many lattices of a scale are tried, and with how many choices of decks and columns each."""
+THOROUGH = 4
+"""Times as many moves where the scale is the last chance, or one of those below the first that worked."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,7 +149,8 @@ class _Search:
         tried = [start for _, start in self.ahead.each(turns, self._start) if start is not None]
         starts = sorted(tried, key=lambda start: start.cost)[: effort.lattices * effort.seeds]
         worth = [start for i, start in enumerate(starts) if i == 0 or starts[i - 1].cost <= HOPELESS]
-        for _, outcome in self.ahead.each(worth, self._from):
+        moves = MOVES_PER_MASS if effort == QUICK else THOROUGH * MOVES_PER_MASS
+        for _, outcome in self.ahead.each(worth, lambda start: self._from(start, moves)):
             if outcome.found is not None:
                 self.progress(f"{scale:.3f} mm per grid unit: routed on two unit plates")
                 return outcome.found
@@ -192,13 +196,17 @@ class _Search:
             self.rules,
         )
 
-    def _from(self, start: _Start) -> _Outcome:
-        """Both decks annealed without a broken rule, crossing nets in one slot, and routed; or what is in the way."""
+    def _from(self, start: _Start, moves: int) -> _Outcome:
+        """Both decks annealed without a broken rule, crossing nets in one slot, and routed; or what is in the way.
+
+        Args:
+            moves: a mass, of each anneal.
+        """
         wanted: dict[str, Slot] = {}
         last, best, judged = _Outcome(None), math.inf, 0
         for turn in range(TURNS):
             first = (Deck.LOWER, Deck.UPPER)[turn % 2]
-            pair = self._pair(start, first, wanted, start.seed + turn, MOVES_PER_MASS)
+            pair = self._pair(start, first, wanted, start.seed + turn, moves)
             if pair is None:
                 break
             cost = sum(result.cost for result in pair.values())
