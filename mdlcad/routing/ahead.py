@@ -26,7 +26,7 @@ class Ahead:
     """
 
     def __init__(self, workers: int) -> None:
-        self._pool, self._workers = ThreadPoolExecutor(workers), workers
+        self._pool, self.workers = ThreadPoolExecutor(workers), workers
 
     def __enter__(self) -> Ahead:
         return self
@@ -47,7 +47,7 @@ class Ahead:
         begun: deque[tuple[Item, Future[Result]]] = deque()
         try:
             while True:
-                while len(begun) < self._workers:
+                while len(begun) < self.workers:
                     item = next((item for item in waiting if wanted(item)), None)
                     if item is None:
                         break

@@ -116,7 +116,7 @@ def place_and_route(
         progress: called with one line for every scale tried.
         judge: what a layout is held to besides its clearances.
         placer: decides who sits where.
-        workers: how many lattices are annealed at once; the result is the same for any number.
+        workers: how many lattices are annealed, or channels routed, at once; the result is the same for any number.
 
     Raises:
         SignoffError: no scale that ``size`` allows, up to ``STEP ** MOST_STEPS`` times the least one, works; it says
@@ -243,7 +243,13 @@ class _Search:
                 continue
             try:
                 layout = route(
-                    self.network, result.placement, self.rules, self.seed + offset, self.judge, sides=result.sides
+                    self.network,
+                    result.placement,
+                    self.rules,
+                    self.seed + offset,
+                    self.judge,
+                    sides=result.sides,
+                    workers=self.ahead.workers,
                 )
             except JamError as error:
                 self.reason = str(error)

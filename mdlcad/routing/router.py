@@ -10,6 +10,7 @@ from mdlcad.placement.grid import inside, terminals
 from mdlcad.placement.lattice import Lattice
 from mdlcad.placement.placement import Placement
 from mdlcad.placement.placer import Sides, choose_sides
+from mdlcad.routing.ahead import Ahead
 from mdlcad.routing.assemble import assemble
 from mdlcad.routing.channel import ChannelRoute
 from mdlcad.routing.gather import channels
@@ -50,16 +51,32 @@ def route(
     judge: Judge = no_objection,
     keeper: Keeper | None = None,
     sides: Sides | None = None,
+    workers: int = 1,
 ) -> Layout:
     """Tracks and plates for every carrier, coupler, bias leaf and tab.
 
     Couplings that mechanics has no linkage for end in ``Layout.unrealised``. With a ``keeper`` all is routed as it was
     in the earlier layout, where that is still possible. ``sides`` are tried first, if the placer has given them.
+    So many channels as there are ``workers`` are solved at once; the layout is the same for any number.
 
     Raises:
         JamError: a channel has no legal routing (or none was found), and then it names the channel and its fullest
             nets; or none that the judge accepts, and then it names the coupling.
     """
+    with Ahead(workers) as ahead:
+        return _route(network, placement, rules, seed, judge, keeper, sides, ahead)
+
+
+def _route(
+    network: Network,
+    placement: Placement,
+    rules: LayoutRules,
+    seed: int,
+    judge: Judge,
+    keeper: Keeper | None,
+    sides: Sides | None,
+    ahead: Ahead,
+) -> Layout:
     lattice = lattice_of(placement, rules)
     jam = JamError(f"{network.design} has no channels", Jam(placement))
     turns = range(SIDE_TRIES) if keeper is None else keeper.turns(placement, lattice, rules, SIDE_TRIES)
@@ -68,10 +85,13 @@ def route(
         chosen = sides if sides and not attempt else choose(network, placement, lattice, rules, seed + attempt)
         work = channels(network, placement, lattice, chosen, rules, turn)
         routes: dict[int, ChannelRoute] = {}
+
+        def solved(index: int, work: tuple[Channel, ...] = work) -> ChannelRoute | None:
+            return solve_channel(work[index], rules, seed)
+
         again = set(range(len(work)))
         for _ in range(ROUNDS):
-            for index in sorted(again):
-                found = solve_channel(work[index], rules, seed)
+            for index, found in ahead.each(sorted(again), solved):
                 if found is None:
                     jam = JamError(_complaint(work[index], placement), Jam(placement, work[index]))
                     break
