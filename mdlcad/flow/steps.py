@@ -20,10 +20,10 @@ from mdlcad.language import Device, read_device
 from mdlcad.mapping import map_netlist
 from mdlcad.mechanics import Process, Sizing, size
 from mdlcad.mechanics.compensation import COMPENSATION_FILE, Compensation, compensate, compensated
-from mdlcad.mechanics.drive import DriveLoads, drive_loads
+from mdlcad.mechanics.drive import DriveLoads
 from mdlcad.network.model import CouplingKind, Network
 from mdlcad.parts import build_parts
-from mdlcad.parts.clock import clock_seats
+from mdlcad.parts.clock import device_loads
 from mdlcad.parts.stiffness import CarrierStiffness, carrier_stiffnesses
 from mdlcad.parts.store import Parts, bodies_of, records_of
 from mdlcad.placement.placement import Placement
@@ -141,14 +141,9 @@ def _compensation_words(state: State) -> str:
 
 
 def _drive(job: Job, state: State, progress: Progress) -> State:
-    return replace(state, drive=drive_of(state, job.process, job.seed))
-
-
-def drive_of(state: State, process: Process, seed: int) -> DriveLoads:
-    """What drives a device that is placed."""
-    network, sizing, placement = need(state.network), need(state.sizing), need(state.placement)
-    seats = clock_seats(network, placement, sizing, _stacked(process, state), Polygon(placement.boundary))
-    return drive_loads(network, sizing, process, need(state.proof).sensor_force, seed, seats)
+    process, force = _stacked(job.process, state), need(state.proof).sensor_force
+    loads = device_loads(need(state.network), need(state.placement), need(state.sizing), process, force, job.seed)
+    return replace(state, drive=loads)
 
 
 def _build_parts(job: Job, state: State, progress: Progress) -> State:

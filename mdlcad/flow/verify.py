@@ -19,10 +19,10 @@ from mdlcad.mapping import CELLS_FILE, map_netlist, recorded_library
 from mdlcad.mapping.two_phase import TwoPhaseLibrary
 from mdlcad.mechanics import Process, Sizing
 from mdlcad.mechanics.compensation import COMPENSATION_FILE, Compensation, compensate, compensated
-from mdlcad.mechanics.drive import DriveLoads, drive_loads
+from mdlcad.mechanics.drive import DriveLoads
 from mdlcad.network.model import Network
 from mdlcad.parts import build_parts
-from mdlcad.parts.clock import clock_seats
+from mdlcad.parts.clock import device_loads
 from mdlcad.parts.plates import plates_of
 from mdlcad.parts.stiffness import carrier_stiffnesses
 from mdlcad.parts.store import Parts, records_of
@@ -110,8 +110,7 @@ def _verify(folder: Path, report: Report, workers: int, say: Callable[[str], Non
     sizing = compensated(sizing, solved)
     drive = load(folder, "drive.json", DriveLoads)
     boundary = Polygon(placement.boundary)
-    seats = clock_seats(network, placement, sizing, process, boundary)
-    loads = drive_loads(network, sizing, process, proof.sensor_force, report.seed, seats)
+    loads = device_loads(network, placement, sizing, process, proof.sensor_force, report.seed)
     step("drive", [] if drive == loads else ["drive.json: not what the device's simulation gives"])
     bodies = build_parts(network, placement, layout, sizing, process, boundary, drive.moments)
     stored = load(folder, "parts.json", Parts)

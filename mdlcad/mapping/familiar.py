@@ -15,9 +15,8 @@ from mdlcad.mapping.cell_library import Library
 from mdlcad.mapping.options import Option, OptionGraph
 from mdlcad.mapping.plan import Key, Role
 from mdlcad.mapping.subject import Subject
-from mdlcad.mapping.threshold import Threshold
-from mdlcad.mapping.wired import value
-from mdlcad.network.model import Coupling, MassKind, Network
+from mdlcad.mapping.wired import ring_of, value, wires_of
+from mdlcad.network.model import MassKind, Network
 
 NEW_MASS, NEW_INPUTS = 6, 3
 """What is charged for a mass that was not there, and for one that had other inputs; a mass costs 16."""
@@ -108,39 +107,24 @@ class _Earlier:
 
     def __init__(self, subject: Subject, network: Network, library: Library) -> None:
         self._subject = subject
-        self._library = library
+        self._wires = wires_of(network, library)
         self._masses = {mass.name: mass for mass in network.masses}
-        self._sources: dict[str, list[Coupling]] = {name: [] for name in self._masses}
-        for coupling in network.couplings:
-            self._sources[coupling.target].append(coupling)
         self._bits = {bit.mass: bit.bit for bit in network.sensors}
         self._bits |= {register.mass: register.bit for register in network.registers}
         self._holds = {f"{register.bit}.hold": register.bit for register in network.registers}
         # a store's twin takes the register's value too
         taken = [item for item in network.couplings if item.source in self._holds]
         self._bits |= {item.target: self._holds[item.source] for item in taken}
-        self._ring = self._find_ring()
+        self._ring = ring_of(self._wires)
         self._tables: dict[str, int | None] = dict.fromkeys(sorted(self._ring), subject.full)
         self.inputs: dict[_Sign, set[_Inputs]] = {}
         for name in self._masses:
             sign = self._sign(name)
-            inputs = [(self._input(item.source), self._weight(item)) for item in self._sources[name]]
+            wire = self._wires[name]
+            inputs = [(self._input(o), w) for o, w in zip(wire.sources, wire.function.weights, strict=True)]
             if name not in self._ring and sign is not None and all(one is not None for one, _ in inputs):
                 found = tuple(sorted((one, abs(weight)) for one, weight in inputs if one is not None))
                 self.inputs.setdefault(sign, set()).add(found)
-
-    def _find_ring(self) -> set[str]:
-        """The masses of the tick that depend on nothing but the tick."""
-        ring = {name for name, mass in self._masses.items() if mass.kind is MassKind.TICK}
-        while True:
-            led = {name for name in ring if any(item.source not in ring for item in self._sources[name])}
-            if not led:
-                return ring
-            ring -= led
-
-    def _weight(self, coupling: Coupling) -> int:
-        signs = self._masses[coupling.source].polarity * self._masses[coupling.target].polarity
-        return round(coupling.strength / self._library.coupling.strength) * signs
 
     def _table(self, name: str) -> int | None:
         """A mass's function with the tick at 1; None if it leans on an input that the program has no longer."""
@@ -154,7 +138,7 @@ class _Earlier:
                 there = bit in self._subject.inputs
                 self._tables[stack.pop()] = self._subject.table(self._subject.input(bit)) if there else None
             else:
-                missing = [item.source for item in self._sources[top] if item.source not in self._tables]
+                missing = [source for source in self._wires[top].sources if source not in self._tables]
                 if missing:
                     stack += missing
                 else:
@@ -162,18 +146,14 @@ class _Earlier:
         return self._tables[name]
 
     def _evaluate(self, name: str) -> int | None:
-        mass = self._masses[name]
-        tables = [self._tables[item.source] for item in self._sources[name]]
+        wire = self._wires[name]
+        tables = [self._tables[source] for source in wire.sources]
         known = [table for table in tables if table is not None]
-        if len(known) < len(tables):
-            return None
-        bias = -round(mass.bias / self._library.bias.force) * mass.polarity
-        function = Threshold(tuple(self._weight(item) for item in self._sources[name]), bias)
-        return value(self._subject.full, function, known)
+        return value(self._subject.full, wire.function, known) if len(known) == len(tables) else None
 
     def _gated(self, name: str) -> bool:
         """Whether a mass has the tick, or the tick under a load, among its inputs."""
-        return any(self._masses[item.source].kind is MassKind.TICK for item in self._sources[name])
+        return any(self._masses[source].kind is MassKind.TICK for source in self._wires[name].sources)
 
     def _sign(self, name: str) -> _Sign | None:
         table = self._table(name)

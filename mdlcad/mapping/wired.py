@@ -5,7 +5,7 @@ All is as if every mass were upright. Tables are those of a tick: the ring's mas
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from mdlcad.mapping.cell_library import Library
@@ -76,19 +76,27 @@ def value(full: int, function: Threshold, tables: Sequence[int]) -> int:
 def tables_of(wires: Wires, known: Mapping[str, int], full: int) -> dict[str, int]:
     """Truth table of every mass, from the ``known`` ones."""
     tables = dict(known)
+
+    def made(wire: Wire) -> int:
+        return value(full, wire.function, [tables[source] for source in wire.sources])
+
+    _complete(wires, tables, made)
+    return tables
+
+
+def _complete(wires: Wires, found: dict[str, int], made: Callable[[Wire], int]) -> None:
+    """Make what ``found`` lacks, every mass after its sources."""
     for start in wires:
         stack = [start]
         while stack:
             top = stack[-1]
-            missing = [] if top in tables else [source for source in wires[top].sources if source not in tables]
+            missing = [] if top in found else [source for source in wires[top].sources if source not in found]
             if missing:
                 stack += missing
                 continue
             stack.pop()
-            if top not in tables:
-                wire = wires[top]
-                tables[top] = value(full, wire.function, [tables[source] for source in wire.sources])
-    return tables
+            if top not in found:
+                found[top] = made(wires[top])
 
 
 def takers(wires: Wires, holds: Mapping[str, str]) -> dict[str, tuple[str, bool]]:
@@ -117,17 +125,10 @@ def arrivals(wires: Wires, changed: Iterable[str], fixed: Iterable[str]) -> dict
     """The last cycle in which each mass can still change after ``changed`` ones did in cycle 0, while ``fixed`` ones
     stay as they are; ``NEVER`` for those that do not depend on them."""
     found = dict.fromkeys(fixed, NEVER) | dict.fromkeys(changed, 0)
-    for start in wires:
-        stack = [start]
-        while stack:
-            top = stack[-1]
-            missing = [] if top in found else [source for source in wires[top].sources if source not in found]
-            if missing:
-                stack += missing
-                continue
-            stack.pop()
-            if top not in found:
-                late = 1 if wires[top].phase == 0 else 0
-                found[top] = max((found[source] + late for source in wires[top].sources), default=NEVER)
-                found[top] = max(found[top], NEVER)
+
+    def latest(wire: Wire) -> int:
+        late = 1 if wire.phase == 0 else 0
+        return max((found[source] + late for source in wire.sources), default=NEVER)
+
+    _complete(wires, found, latest)
     return found

@@ -11,7 +11,7 @@ from shapely.affinity import translate
 
 from mdlcad.errors import UsageError
 from mdlcad.mechanics.decks import Deck, plate_in
-from mdlcad.mechanics.drive import Seat
+from mdlcad.mechanics.drive import DriveLoads, Seat, drive_loads
 from mdlcad.mechanics.process import Process
 from mdlcad.mechanics.sizes import UnitSize
 from mdlcad.mechanics.sizing import Sizing
@@ -63,6 +63,18 @@ def clock_seats(
         )
         for place in placement.masses
     )
+
+
+def device_loads(
+    network: Network, placement: Placement, sizing: Sizing, process: Process, sensor_force: float, seed: int
+) -> DriveLoads:
+    """What drives a device that is placed; see ``drive_loads``.
+
+    Args:
+        process: with the plates of both decks, if the device has two.
+    """
+    seats = clock_seats(network, placement, sizing, process, Polygon(placement.boundary))
+    return drive_loads(network, sizing, process, sensor_force, seed, seats)
 
 
 def handle_notch(stack: Stack, handle: Handle) -> Polygon:
