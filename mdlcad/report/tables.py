@@ -33,6 +33,8 @@ _RULES = {
     "guide_strain": ("no guide is strained beyond its limit at the end of its stroke", ""),
     "guide_buckling": ("no guide bears more than half of the load that buckles it", "N"),
     "guide_turn": ("a clock plate turns no unit's clock by more than the machine's repeatability", "mm"),
+    "shuttle_tilt": ("no net's couplings tilt its shuttle into the plates above and below", "rad"),
+    "strain_root": ("no fillet is strained beyond what its material bears at rare peaks", ""),
     "strain": ("no flexure is strained beyond its limit in repeated use", ""),
     "strain_peak": ("no flexure is strained beyond its limit at rare peaks", ""),
     "preload_room": ("every solved preload stays within the room that its slot was sized for", "mm"),
