@@ -25,8 +25,8 @@ def kernel(function: Callable[..., Any]) -> Any:
         return numba.njit(nogil=True, error_model="numpy")(function)
 
 
-part = numba.njit(error_model="numpy")
+part = numba.njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
 """Decorates what kernels call; it is kept with them."""
 
-inlined = numba.njit(error_model="numpy", forceinline=True)
+inlined = numba.njit(error_model="numpy", forceinline=True, no_cpython_wrapper=True, no_cfunc_wrapper=True)
 """As ``part``, for what is small and called often."""

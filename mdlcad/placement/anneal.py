@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from mdlcad.compiled import inlined, kernel, part
 from mdlcad.placement.chance import draw
-from mdlcad.placement.costs import BIAS_SIDE, SLOT, VIA_A, WIRE, hard_cost, passes, row_cost, span, tally
+from mdlcad.placement.costs import BIAS_SIDE, PUT, SLOT, TAKEN, VIA_A, WIRE, hard_cost, passes, row_cost, span, tally
 from mdlcad.placement.problem import Floats, Ints, Problem
 from mdlcad.placement.state import COLUMN, DEEP, State
 from mdlcad.placement.tracks import track_cost
@@ -137,7 +137,7 @@ def _counted(p: Problem, s: State, nets: Ints) -> Floats:
     s.row[:], s.trunk_count[:] = 0, 0
     for mass in range(len(s.mass)):
         nets[0] = mass
-        tally(p, s, nets, 1, mass, -1, 1)
+        tally(p, s, nets, PUT[0], mass, TAKEN[0], PUT[0])
     known = np.zeros(len(s.trunk_count))
     for band in range(len(known)):
         s.dirty[band] = 0
@@ -235,14 +235,14 @@ def anneal(
             if reach > 0 and draw(random) >= math.exp(-reach / heat):
                 continue
         for attempt in range(2):
-            change += tally(p, s, nets, n, mass, other, -1)
+            change += tally(p, s, nets, n, mass, other, TAKEN[0])
             if kind == 0:
                 s.side[coupling] = 1 - s.side[coupling]
             elif kind == 1:
                 s.mass[mass, BIAS_SIDE] = 1 - s.mass[mass, BIAS_SIDE]
             else:
                 _swap(s, mass, slot if attempt == 0 else old)
-            change += tally(p, s, nets, n, mass, other, 1)
+            change += tally(p, s, nets, n, mass, other, PUT[0])
             if attempt == 0:
                 least = change
                 for channel in range(len(known)):

@@ -24,6 +24,8 @@ SHARED = 4.0
 # columns of State.row, the tallies of one (channel, row); A hangs on the left of the channel, B on the right
 VIA_A, VIA_B, BIAS_A, BIAS_B, STRAIGHT, POST_A, POST_B, SPOST_A, SPOST_B = range(9)
 SLOT, BIAS_SIDE = 0, 1
+TAKEN, PUT = np.array([-1]), np.array([1])
+"""Signs of what is taken out of the tallies and put in. From arrays, as numba compiles anew for every constant."""
 
 
 # The small functions take single rows, not the whole state: numba passes every array of a tuple by value.

@@ -12,7 +12,7 @@ from scipy.optimize import linear_sum_assignment
 from mdlcad.mechanics.rules import LayoutRules
 from mdlcad.network.model import Network
 from mdlcad.placement.anneal import anneal
-from mdlcad.placement.columns import choose_columns
+from mdlcad.placement.columns import choose_columns, question_of
 from mdlcad.placement.costs import HARD
 from mdlcad.placement.lattice import Lattice
 from mdlcad.placement.placement import Placement
@@ -172,8 +172,9 @@ def _columns(problem: Problem, lattice: Lattice, home: Ints, held: bool, seed: i
         held: to look first whether all homes can be kept.
     """
     homes = [int(problem.slot[slot, 0]) if slot >= 0 else -1 for slot in home.tolist()]
-    found = choose_columns(problem, lattice, seed, homes, True) if held else None
-    found = found or choose_columns(problem, lattice, seed, homes)
+    question = question_of(problem, lattice)
+    found = choose_columns(question, seed, homes, True) if held else None
+    found = found or choose_columns(question, seed, homes)
     return None if found is None else np.array(found, np.int32)
 
 

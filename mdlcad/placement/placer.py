@@ -10,7 +10,7 @@ import numpy as np
 from mdlcad.mechanics.rules import LayoutRules
 from mdlcad.network.model import Network
 from mdlcad.placement.anneal import anneal
-from mdlcad.placement.columns import choose_columns
+from mdlcad.placement.columns import Answers, question_of
 from mdlcad.placement.large import mend, place_large
 from mdlcad.placement.lattice import Lattice
 from mdlcad.placement.placement import PlacedMass, Placement
@@ -49,15 +49,25 @@ class PlaceResult:
 
 
 def place(
-    network: Network, lattice: Lattice, rules: LayoutRules, seed: int, moves_per_mass: int = MOVES_PER_MASS
+    network: Network,
+    lattice: Lattice,
+    rules: LayoutRules,
+    seed: int,
+    moves_per_mass: int = MOVES_PER_MASS,
+    columns: Answers | None = None,
 ) -> PlaceResult:
-    """Anneal ``network`` onto ``lattice``, which must have a slot for every mass. Same arguments, same result."""
+    """Anneal ``network`` onto ``lattice``, which must have a slot for every mass. Same arguments, same result.
+
+    Args:
+        columns: those chosen so far, in a search that places many times.
+    """
     problem = build(network, lattice, rules)
     if len(network.masses) > LARGE:
         state, cost = place_large(problem, lattice, seed, moves_per_mass)
         placement = placement_of(network, lattice, state.mass[:, 0], seed)
         return PlaceResult(placement, cost, sides_of(network, placement, rules, state, cost))
-    state, source = start(problem, np.array(_start(problem, lattice, len(network.masses), seed), np.int32), seed)
+    slots = _start(problem, lattice, len(network.masses), seed, columns or Answers())
+    state, source = start(problem, np.array(slots, np.int32), seed)
     cost = anneal(problem, state, source, moves_per_mass * len(network.masses), HOT, COLD, False)
     return PlaceResult(placement_of(network, lattice, state.mass[:, 0], seed), float(cost))
 
@@ -80,11 +90,11 @@ def placement_of(network: Network, lattice: Lattice, slot_of: Ints, seed: int) -
     )
 
 
-def _start(problem: Problem, lattice: Lattice, masses: int, seed: int) -> list[int]:
+def _start(problem: Problem, lattice: Lattice, masses: int, seed: int, answers: Answers) -> list[int]:
     """A slot for every mass: any of the column chosen for it, or any at all if no columns were found."""
     slots = list(range(len(lattice.slots)))
     random.Random(seed).shuffle(slots)
-    columns = choose_columns(problem, lattice, seed)
+    columns = answers.choose(question_of(problem, lattice), seed)
     if columns is None:
         return slots[:masses]
     free: dict[int, list[int]] = {}

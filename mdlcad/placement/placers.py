@@ -9,6 +9,7 @@ import numpy as np
 
 from mdlcad.mechanics.rules import LayoutRules
 from mdlcad.network.model import Network
+from mdlcad.placement.columns import Answers
 from mdlcad.placement.lattice import Lattice
 from mdlcad.placement.names import PlacerName
 from mdlcad.placement.placer import PlaceResult, choose_sides, place, placement_of
@@ -34,10 +35,10 @@ class Placer(Protocol):
         """Place points on the sites of a grid."""
 
     def on_lattice(
-        self, network: Network, lattice: Lattice, rules: LayoutRules, seed: int, moves_per_mass: int
+        self, network: Network, lattice: Lattice, rules: LayoutRules, seed: int, moves_per_mass: int, columns: Answers
     ) -> PlaceResult:
         """Place units on the slots of ``lattice``, which has one for every mass; ``moves_per_mass`` is how hard to try,
-        for a placer that can try harder."""
+        for a placer that can try harder, and ``columns`` are those chosen so far, for one that chooses them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,10 +57,10 @@ class AnnealPlacer:
         return place_straight(problem, seed, self.options)
 
     def on_lattice(
-        self, network: Network, lattice: Lattice, rules: LayoutRules, seed: int, moves_per_mass: int
+        self, network: Network, lattice: Lattice, rules: LayoutRules, seed: int, moves_per_mass: int, columns: Answers
     ) -> PlaceResult:
         """Place units on the slots of ``lattice``."""
-        return place(network, lattice, rules, seed, moves_per_mass)
+        return place(network, lattice, rules, seed, moves_per_mass, columns)
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,7 +79,7 @@ class PaperPlacer:
         return place_like_the_paper(problem, seed, self.options)
 
     def on_lattice(
-        self, network: Network, lattice: Lattice, rules: LayoutRules, seed: int, moves_per_mass: int
+        self, network: Network, lattice: Lattice, rules: LayoutRules, seed: int, moves_per_mass: int, columns: Answers
     ) -> PlaceResult:
         """Place units on the slots of ``lattice``; the cost is that of the rules which the best sides still break."""
         found = self.on_sites(slot_problem(network, lattice, rules), seed)

@@ -13,6 +13,7 @@ from shapely import Polygon
 from mdlcad.errors import Picture, SignoffError
 from mdlcad.mechanics.rules import LayoutRules
 from mdlcad.network.model import Network
+from mdlcad.placement.columns import Answers
 from mdlcad.placement.costs import HARD
 from mdlcad.placement.lattice import bare_placement, lattices
 from mdlcad.placement.placement import Placement
@@ -209,6 +210,7 @@ class _Search:
         self.reason = ""
         self.judged = 0
         self.empty = Placement((), 0.0, (), (), (), (), (), seed)
+        self._columns = Answers()
 
     def attempt(self, scale: float, effort: Effort) -> tuple[Placement, Layout] | None:
         """A placement and its layout at ``scale``, or None."""
@@ -222,7 +224,8 @@ class _Search:
 
         def place(what: tuple[int, int, int]) -> PlaceResult:
             index, offset, moves_per_mass = what
-            return self.placer.on_lattice(self.network, choices[index], self.rules, self.seed + offset, moves_per_mass)
+            lattice, seed = choices[index], self.seed + offset
+            return self.placer.on_lattice(self.network, lattice, self.rules, seed, moves_per_mass, self._columns)
 
         short = self.ahead.each([(index, 0, SCREEN) for index in range(len(choices))], place)
         screened = sorted(((index, result) for (index, _, _), result in short), key=lambda item: item[1].cost)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from mdlcad.cli.build import PLACERS
+from mdlcad.placement.columns import Answers
 from mdlcad.placement.lattice import lattices, place_ports
 from mdlcad.placement.names import PlacerName
 from mdlcad.placement.placers import AnnealPlacer, PaperPlacer, Placer, slot_problem
@@ -20,11 +21,11 @@ def test_the_command_line_knows_them_all() -> None:
 def test_units_get_slots_of_their_own(placer: Placer) -> None:
     network, ports, rules = small()
     lattice = lattices(SQUARE, place_ports(network, ports, 3.9), rules, 3.9, 18)[0]
-    result = placer.on_lattice(network, lattice, rules, 1, 500)
+    result = placer.on_lattice(network, lattice, rules, 1, 500, Answers())
     seats = [(unit.column, unit.row) for unit in result.placement.masses]
     assert len(set(seats)) == len(network.masses)
     assert set(seats) <= set(lattice.slots)
-    assert result == placer.on_lattice(network, lattice, rules, 1, 500)
+    assert result == placer.on_lattice(network, lattice, rules, 1, 500, Answers())
 
 
 def test_the_papers_options_do_what_they_say() -> None:
