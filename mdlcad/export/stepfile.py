@@ -14,7 +14,6 @@ from dataclasses import dataclass
 from mdlcad.errors import SignoffError
 
 _REFERENCE = re.compile(r"#(\d+)")
-_STRING = re.compile(r"'(?:[^']|'')*'")
 # Stand in for what strings may hold, while statements and references are found by their marks.
 _HIDDEN = str.maketrans({"#": "\x01", ";": "\x02"})
 _SHOWN = str.maketrans({"\x01": "#", "\x02": ";"})
@@ -74,33 +73,41 @@ def canonical_step(text: str) -> str:
             _sort_unordered(entity, digests)
     representative = _merge(entities, digests)
     order = _walk(entities, digests, representative)
-    number = {old: new for new, old in enumerate(order, start=1)}
-    lines = [_written(entities[old], number[old], number, representative) for old in order]
+    own = {old: f"#{new}" for new, old in enumerate(order, start=1)}
+    name = {old: own[same] for old, same in representative.items() if same in own}
+    lines: list[str] = []
+    for old in order:
+        entity = entities[old]
+        lines += (own[old], "=", entity.texts[0])
+        for reference, text in zip(entity.references, entity.texts[1:], strict=True):
+            lines += (name[reference], text)
+        lines.append(";\n")
     return head + mark + "".join(lines).translate(_SHOWN) + end_mark + tail
-
-
-def _written(entity: _Entity, own: int, number: dict[int, int], representative: dict[int, int]) -> str:
-    parts = [f"#{own}={entity.texts[0]}"]
-    for reference, text in zip(entity.references, entity.texts[1:], strict=True):
-        parts.append(f"#{number[representative[reference]]}{text}")
-    parts.append(";\n")
-    return "".join(parts)
 
 
 def _entities(data: str) -> dict[int, _Entity]:
     found: dict[int, _Entity] = {}
-    hidden = _STRING.sub(lambda match: match[0].replace("\n", "").translate(_HIDDEN), data)
-    for statement in hidden.split(";"):
-        if not statement.strip():
+    for statement in _tight(data).split(";"):
+        if not statement:
             continue
-        name, equals, value = statement.partition("=")
-        label = name.strip()
-        if not equals or not label.startswith("#") or not label[1:].isdigit():
-            raise SignoffError(f"not a STEP entity: {statement.strip()[:60]}")
-        pieces = _REFERENCE.split(_tight(value))
+        label, equals, value = statement.partition("=")
+        if not equals or label[0] != "#" or not label[1:].isdigit():
+            raise SignoffError(f"not a STEP entity: {statement[:60]}")
+        pieces = _REFERENCE.split(value)
         kind = pieces[0].partition("(")[0]
         found[int(label[1:])] = _Entity(kind, pieces[0::2], [int(piece) for piece in pieces[1::2]])
     return found
+
+
+def _tight(data: str) -> str:
+    """Without the white space between tokens; in strings, whose other spaces stay, marks are hidden.
+
+    Between apostrophes there is a string and what is no string by turns, as one within a string is written twice.
+    """
+    pieces = data.split("'")
+    pieces[0::2] = ["".join(piece.split()) for piece in pieces[0::2]]
+    pieces[1::2] = [piece.replace("\n", "").translate(_HIDDEN) if piece else piece for piece in pieces[1::2]]
+    return "'".join(pieces)
 
 
 def _number_occurrences(entities: dict[int, _Entity]) -> None:
@@ -110,18 +117,10 @@ def _number_occurrences(entities: dict[int, _Entity]) -> None:
         entity.texts[0] = re.sub(r"^(\w+\(')\d+'", rf"\g<1>{number}'", entity.texts[0])
 
 
-def _tight(value: str) -> str:
-    """Without the white space between tokens; strings keep theirs."""
-    if "'" not in value:
-        return "".join(value.split())
-    parts = re.split(r"('(?:[^']|'')*')", value)
-    parts[::2] = ["".join(part.split()) for part in parts[::2]]
-    return "".join(parts)
-
-
 def _digests(entities: dict[int, _Entity]) -> dict[int, bytes]:
     """Content hash of every entity over all it refers to (references have no cycles in STEP geometry)."""
     digests: dict[int, bytes] = {}
+    known, hashing = digests.get, hashlib.blake2b
     for root in entities:
         stack = [root]
         while stack:
@@ -130,16 +129,15 @@ def _digests(entities: dict[int, _Entity]) -> dict[int, bytes]:
                 stack.pop()
                 continue
             entity = entities[current]
-            missing = [ref for ref in entity.references if ref not in digests]
-            if missing:
-                stack.extend(missing)
+            hashed = [known(ref) for ref in entity.references]
+            if None in hashed:
+                stack.extend(ref for ref in entity.references if ref not in digests)
                 continue
             stack.pop()
-            hashed = [digests[ref] for ref in entity.references]
             if entity.kind == _UNORDERED:
                 hashed.sort()
             content = "#".join(entity.texts).encode() + b"".join(hashed)
-            digests[current] = hashlib.blake2b(content, digest_size=16).digest()
+            digests[current] = hashing(content, digest_size=16).digest()
     return digests
 
 
