@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import multiprocessing
 from collections.abc import Callable, Sequence
-from concurrent.futures import Executor, Future, ProcessPoolExecutor
-from contextlib import nullcontext
+from contextlib import ExitStack
 from pathlib import Path
 
 from mdlcad.artefact import write_atomic
+from mdlcad.aside import Aside
 from mdlcad.export.drawing import dxf_plate, svg_plate
 from mdlcad.export.mesh import stl_plate, threemf_device
 from mdlcad.export.step import step_assembly
@@ -46,10 +45,8 @@ def write_files(
         written.append(name)
 
     plates = plates_of(bodies)
-    # a child that was forked would share this one's CAD kernel
-    pool = ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) if workers > 1 else nullcontext()
-    with pool as executor:
-        whole = _started(executor, design, bodies)
+    with ExitStack() as ending:
+        aside = ending.enter_context(Aside(step_assembly, design, bodies)) if workers > 1 else None
         progress("3MF")
         put(f"{design}.3mf", threemf_device(design, bodies))
         for plate, members in plates.items():
@@ -64,13 +61,5 @@ def write_files(
                 put(f"{stem}.dxf", dxf_plate(cut, kerf_mm))
             put(f"plates/{plate}.step", step_assembly(plate, members))
         progress("STEP of the device")
-        put(f"{design}.step", whole())
+        put(f"{design}.step", step_assembly(design, bodies) if aside is None else aside.result())
     return tuple(sorted(written))
-
-
-def _started(executor: Executor | None, name: str, bodies: Sequence[Body]) -> Callable[[], bytes]:
-    """A STEP file under way; calling the result waits for its bytes."""
-    if executor is None:
-        return lambda: step_assembly(name, bodies)
-    future: Future[bytes] = executor.submit(step_assembly, name, bodies)
-    return future.result

@@ -120,7 +120,6 @@ def _number_occurrences(entities: dict[int, _Entity]) -> None:
 def _digests(entities: dict[int, _Entity]) -> dict[int, bytes]:
     """Content hash of every entity over all it refers to (references have no cycles in STEP geometry)."""
     digests: dict[int, bytes] = {}
-    known, hashing = digests.get, hashlib.blake2b
     for root in entities:
         stack = [root]
         while stack:
@@ -129,15 +128,15 @@ def _digests(entities: dict[int, _Entity]) -> dict[int, bytes]:
                 stack.pop()
                 continue
             entity = entities[current]
-            hashed = [known(ref) for ref in entity.references]
-            if None in hashed:
+            hashed = [digests.get(ref, b"") for ref in entity.references]
+            if b"" in hashed:
                 stack.extend(ref for ref in entity.references if ref not in digests)
                 continue
             stack.pop()
             if entity.kind == _UNORDERED:
                 hashed.sort()
             content = "#".join(entity.texts).encode() + b"".join(hashed)
-            digests[current] = hashing(content, digest_size=16).digest()
+            digests[current] = hashlib.blake2b(content, digest_size=16).digest()
     return digests
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -13,6 +13,7 @@ import msgspec
 from mdlcad import __version__
 from mdlcad.artefact import checksum, to_json, write_atomic
 from mdlcad.errors import InputError, SignoffError, UsageError
+from mdlcad.flow.companions import Companions
 from mdlcad.flow.earlier import load_earlier
 from mdlcad.flow.folder import REPORT, new_folder, resting_place
 from mdlcad.flow.inputs import digests_of, inputs_of
@@ -109,18 +110,23 @@ def build(request: Request, say: Callable[[str], None]) -> tuple[Path, list[str]
             records.append(_written(step, job, before))
             made |= digests_of(step.makes, before, folder)
             stopped = stopped or _objection(step, before)
-        for step in steps:
-            if stopped is not None:
-                break
-            inputs = inputs_of(step, job, made)
-            try:
-                state, record = _kept(step, job, state, standing, inputs, say) or _run(step, job, state, inputs, say)
-            except SignoffError as problem:
-                stopped = _stopped(step, problem, folder)
-                break
-            records.append(record)
-            made |= digests_of(step.makes, state, folder)
-            stopped = _objection(step, state)
+        with Companions() as companions:
+            for step in steps:
+                if stopped is not None:
+                    break
+                inputs = inputs_of(step, job, made)
+                try:
+                    done = _kept(step, job, state, standing, inputs, say)
+                    if done is None:
+                        companions.begin(_beside(step, steps, job, made, standing), job, state)
+                        done = _run(step, job, state, inputs, say, companions)
+                    state, record = done
+                except SignoffError as problem:
+                    stopped = _stopped(step, problem, folder)
+                    break
+                records.append(record)
+                made |= digests_of(step.makes, state, folder)
+                stopped = _objection(step, state)
         report = make_report(state, job, tuple(records), stopped, __version__)
         write_atomic(folder / REPORT, to_json(report))
         write_page(folder)
@@ -220,8 +226,19 @@ def _kept(
     return state, record
 
 
-def _run(step: Step, job: Job, state: State, inputs: str, say: Callable[[str], None]) -> tuple[State, StageRecord]:
-    began = time.perf_counter()
+def _beside(
+    step: Step, steps: Sequence[Step], job: Job, made: Mapping[str, str], standing: Standing | None
+) -> list[Step]:
+    """The steps that may run beside ``step`` and cannot be taken over from the standing build."""
+    later = (other for other in steps if other.beside == step.name)
+    old = {} if standing is None else {name: record.inputs for name, record in standing.stages.items()}
+    return [other for other in later if old.get(other.name) != inputs_of(other, job, made)]
+
+
+def _run(
+    step: Step, job: Job, state: State, inputs: str, say: Callable[[str], None], companions: Companions
+) -> tuple[State, StageRecord]:
+    began, before = time.perf_counter(), _listing(job.folder)
 
     def progress(words: str) -> None:
         if sys.stderr.isatty():
@@ -229,9 +246,10 @@ def _run(step: Step, job: Job, state: State, inputs: str, say: Callable[[str], N
             sys.stderr.flush()
 
     progress("...")
-    before = _listing(job.folder)
+    taken: tuple[State, float] | None = None
     try:
-        result = step.run(job, narrowed(state, (*step.needs, *step.told)), progress)
+        taken = companions.take(step, job)
+        result = taken[0] if taken else step.run(job, narrowed(state, (*step.needs, *step.told)), progress)
     except InputError as problem:
         raise (problem if job.source is None else anchored(problem, job.source)) from None
     finally:
@@ -243,7 +261,8 @@ def _run(step: Step, job: Job, state: State, inputs: str, say: Callable[[str], N
     if step.artefact is None:
         lines = [f"{name} {checksum((job.folder / name).read_bytes())}\n" for name in files]
         digest = checksum("".join(lines).encode())
-    record = StageRecord(step.name, round(time.perf_counter() - began, 3), digest, inputs, files)
+    seconds = taken[1] if taken else time.perf_counter() - began
+    record = StageRecord(step.name, round(seconds, 3), digest, inputs, files)
     _tell(step, state, record, say)
     return state, record
 
@@ -263,8 +282,9 @@ def _tell(step: Step, state: State, record: StageRecord, say: Callable[[str], No
 
 
 def _listing(folder: Path) -> frozenset[str]:
-    """Paths of the files in ``folder``, relative to it (for membership only)."""
-    return frozenset(path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file())
+    """Paths of the files in ``folder``, relative to it (for membership only), but those of steps beside the others."""
+    files = (path.relative_to(folder) for path in folder.rglob("*") if path.is_file())
+    return frozenset(file.as_posix() for file in files if not file.parts[0].startswith("."))
 
 
 def _fresh(folder: Path, before: frozenset[str]) -> tuple[str, ...]:

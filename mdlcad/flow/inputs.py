@@ -22,7 +22,7 @@ from mdlcad.parts.store import records_of
 
 _SETTINGS: dict[str, Callable[[Job], bytes]] = {
     # the name of the program's file goes into its artefact
-    "source": lambda job: job.source.name.encode() + b"\0" + job.source.read_bytes() if job.source else b"",
+    "source": lambda job: _program(job.source) if job.source else b"",
     "cells": lambda job: to_json(job.cells),
     "process": lambda job: to_json(job.process),
     "seed": lambda job: to_json(job.seed),
@@ -33,6 +33,13 @@ _SETTINGS: dict[str, Callable[[Job], bytes]] = {
     "like": lambda job: to_json(job.like and job.like.checksum),
 }
 """What a step may read of a ``Job`` beside the folder and the number of workers, which change no result."""
+
+
+def _program(source: Path) -> bytes:
+    try:
+        return source.name.encode() + b"\0" + source.read_bytes()
+    except OSError:
+        return b""  # the step that reads it says what is wrong with it
 
 
 def digests_of(fields: tuple[str, ...], state: State, folder: Path) -> dict[str, str]:

@@ -7,10 +7,11 @@ from dataclasses import replace
 
 from mdlcad.artefact import load, to_json
 from mdlcad.errors import SignoffError, UsageError
+from mdlcad.flow.device import SEARCH_FILE, draw_placement, how_placed
 from mdlcad.flow.placing import Work, best_of
 from mdlcad.flow.state import Job, State, need
 from mdlcad.flow.step import Step
-from mdlcad.flow.steps import SEARCH_FILE, STEPS, draw_placement, how_placed
+from mdlcad.flow.steps import STEPS
 from mdlcad.mapping import Library
 from mdlcad.mapping.two_phase import TwoPhaseLibrary
 from mdlcad.placement.check_grid import check_grid

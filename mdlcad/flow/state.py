@@ -22,6 +22,7 @@ from mdlcad.placement.placers import ANNEAL, Placer
 from mdlcad.placement.unit_grid import GridPlacement
 from mdlcad.proof.outcome import Proof
 from mdlcad.report.report import Search
+from mdlcad.routing.decks import process_of
 from mdlcad.routing.driver import SMALLEST, Size
 from mdlcad.routing.layout import Layout
 from mdlcad.signoff.extraction import BuiltDevice
@@ -121,3 +122,8 @@ def need(artefact: T | None) -> T:
     if artefact is None:
         raise AssertionError("a step ran before the one that makes what it needs")
     return artefact
+
+
+def stacked(process: Process, state: State) -> Process:
+    """The process with as many decks as the device has."""
+    return process_of(process, need(state.placement))

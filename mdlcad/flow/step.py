@@ -25,6 +25,8 @@ class Step:
         artefact: the bytes of what it made, kept as NAME.json; None if it made files of its own.
         restore: the state with what it makes, from the files that it once wrote (all of them are in the job's folder).
         draw: writes what belongs beside that artefact, whether it was made or taken from a folder.
+        beside: the step, before it in the list, that it may run beside in a process of its own, as it needs nothing of
+            that one or those between; it then sees none of the folder's files. "" for none.
         objection: why nothing can be made of what it made, in words with numbers; None if it may go on.
     """
 
@@ -38,6 +40,7 @@ class Step:
     reads: tuple[str, ...] = ()
     told: tuple[str, ...] = ()
     draw: Callable[[Job, State], None] = lambda job, state: None
+    beside: str = ""
     objection: Callable[[State], str | None] = lambda state: None
 
 
@@ -57,8 +60,10 @@ def check_order(steps: Sequence[Step]) -> None:
         ValueError: names the step and what it lacks.
     """
     made: set[str] = set()
+    before: dict[str, set[str]] = {}
     for step in steps:
-        lacking = {*step.needs, *step.told} - made
+        before[step.name] = set(made)
+        lacking = {*step.needs, *step.told} - (before.get(step.beside, set()) if step.beside else made)
         if lacking:
             raise ValueError(f"step {step.name} needs {sorted(lacking)}, which no earlier step makes")
         made |= set(step.makes)

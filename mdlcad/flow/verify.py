@@ -25,7 +25,7 @@ from mdlcad.parts import build_parts
 from mdlcad.parts.clock import device_loads
 from mdlcad.parts.plates import plates_of
 from mdlcad.parts.stiffness import carrier_stiffnesses
-from mdlcad.parts.store import Parts, records_of
+from mdlcad.parts.store import Parts, bodies_of, records_of
 from mdlcad.placement.check_grid import check_grid
 from mdlcad.placement.placement import Placement
 from mdlcad.placement.unit_grid import GridPlacement
@@ -112,9 +112,10 @@ def _verify(folder: Path, report: Report, workers: int, say: Callable[[str], Non
     boundary = Polygon(placement.boundary)
     loads = device_loads(network, placement, sizing, process, proof.sensor_force, report.seed)
     step("drive", [] if drive == loads else ["drive.json: not what the device's simulation gives"])
-    bodies = build_parts(network, placement, layout, sizing, process, boundary, drive.moments)
+    records = records_of(build_parts(network, placement, layout, sizing, process, boundary, drive.moments))
+    bodies = bodies_of(records)
     stored = load(folder, "parts.json", Parts)
-    step("parts", [] if stored == Parts(records_of(bodies), carriers) else ["parts.json: not what the layout makes"])
+    step("parts", [] if stored == Parts(records, carriers) else ["parts.json: not what the layout makes"])
     rules = check_geometry(network, sizing, placement, layout, bodies, carriers, process, drive.moments)
     step("drc", [f"{item.rule}: {', '.join(item.bodies)}: {item.message}" for item in rules.errors])
     again = guide(network, sizing, placement, process, bodies, drive).encode()

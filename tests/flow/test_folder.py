@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 
 import pytest
 
@@ -89,3 +90,6 @@ def test_every_step_is_given_what_it_needs():
     check_order(STEPS)
     with pytest.raises(ValueError, match="needs"):
         check_order(tuple(reversed(STEPS)))
+    # what runs beside another cannot need what that one makes
+    with pytest.raises(ValueError, match="extraction needs"):
+        check_order([replace(step, beside="files") if step.name == "extraction" else step for step in STEPS])

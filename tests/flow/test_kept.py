@@ -85,6 +85,17 @@ def test_a_truncated_file_is_noticed_and_only_its_stage_runs_again(voter_build, 
     assert without_times(whole) == without_times(voter_build)
 
 
+def test_stages_that_run_again_on_kept_ones_and_side_by_side_make_what_they_made(voter_build, whole, capsys):
+    for name in ("guide.html", "extraction.json", "views/exploded.png"):
+        (whole / name).unlink()
+    assert main(["build", str(VOTER), "-o", str(whole), "--jobs", "2"]) == HOLDS
+    said = [line.split()[0] for line in capsys.readouterr().out.splitlines() if not line.startswith("written")]
+    assert said == list(origins(voter_build))
+    assert made(whole) == ["guide", "extraction", "views"]
+    assert without_times(whole) == without_times(voter_build)
+    assert not list(whole.glob(".*"))
+
+
 def test_fresh_runs_everything(early):
     assert rebuild(early) == []
     assert rebuild(early, "--fresh") == EARLY
@@ -158,6 +169,13 @@ def test_a_program_with_an_error_leaves_the_build_as_it_is(early, tmp_path):
     assert main(["build", str(broken), "-o", str(early)]) == UNUSABLE
     assert (early / "report.json").read_bytes() == before
     assert not early.with_name("voter.failed").exists()
+
+
+def test_a_program_that_is_not_there_is_named_and_leaves_the_build_as_it_is(early, tmp_path, capsys):
+    before = (early / "report.json").read_bytes()
+    assert main(["build", str(tmp_path / "absent.mdl"), "-o", str(early)]) == UNUSABLE
+    assert "absent.mdl" in capsys.readouterr().err
+    assert (early / "report.json").read_bytes() == before
 
 
 @pytest.mark.parametrize("step", steps.STEPS, ids=lambda step: step.name)
