@@ -15,7 +15,7 @@ from itertools import pairwise
 import numpy as np
 from scipy.optimize import brentq
 
-from mdlcad.mechanics.fillet import Root, Zone, eye_root, flat_root, zones_of
+from mdlcad.mechanics.fillet import Root, Zone, eye_root, flat_root, shear_area, zones_of
 from mdlcad.mechanics.frame import TURN, Array, Beam, Frame, Solution, X, Y, dof
 
 RIGID = 1e4
@@ -68,6 +68,10 @@ class Sheet:
         """A beam of this sheet: E A = E d w, E I = E d w^3 / 12; stiffer in ``zones``."""
         stretch = self.modulus * self.depth * wall * factor
         return Beam(start, end, stretch, stretch * wall**2 / 12.0, zones)
+
+    def shearing(self, start: int, end: int, wall: float, zones: tuple[Zone, ...] = ()) -> Beam:
+        """The same, of one so short that it matters that it shears as well."""
+        return replace(self.beam(start, end, wall, zones=zones), shear=shear_area(wall))
 
     def walls(
         self,

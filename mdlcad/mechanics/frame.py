@@ -27,13 +27,17 @@ def dof(node: int, direction: int) -> int:
 
 @dataclass(frozen=True, slots=True)
 class Beam:
-    """A straight beam between two nodes: ``axial`` = E A in N, ``bending`` = E I in N mm^2; ``zones`` are stiffer."""
+    """A straight beam between two nodes: ``axial`` = E A in N, ``bending`` = E I in N mm^2; ``zones`` are stiffer.
+
+    ``shear``: E I / (kappa G A), mm^2; 0 for one that is taken not to shear.
+    """
 
     start: int
     end: int
     axial: float
     bending: float
     zones: tuple[Zone, ...] = ()
+    shear: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,7 +138,7 @@ class Frame:
         """Bending moments at the two ends of a beam, N mm (magnitude and sign of the end forces)."""
         length = self.length(beam)
         _, v0, r0, _, v1, r1 = self.local(beam, solution)
-        a, b, c = bending_matrix(length, beam.zones)
+        a, b, c = bending_matrix(length, beam.zones, beam.shear)
         first, last = r0 - (v1 - v0) / length, r1 - (v1 - v0) / length
         stiff = beam.bending / length
         return float(stiff * (a * first + b * last)), float(stiff * (b * first + c * last))
@@ -172,7 +176,8 @@ class Frame:
         zones = [(float(own), beam.zones) for own, beam in zip(length, self.beams, strict=True)]
         a = np.array([beam.axial for beam in self.beams]) / length * [stretch_factor(*item) for item in zones]
         b = np.array([beam.bending for beam in self.beams]) / length**3
-        aa, ab, bb = np.array([bending_matrix(*item) for item in zones]).T
+        turning = [bending_matrix(*item, beam.shear) for item, beam in zip(zones, self.beams, strict=True)]
+        aa, ab, bb = np.array(turning).T
         zero = np.zeros_like(a)
         # stretching along (c, s); bending, whose shape is that of a unit displacement across and of two end turns
         along = np.stack([-c, -s, zero, c, s, zero], axis=1)

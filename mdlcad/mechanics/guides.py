@@ -17,7 +17,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from mdlcad.mechanics.fillet import flat_root, notch_factor, shortening
+from mdlcad.mechanics.fillet import Seat, flat_root, notch_factor, shortening
 from mdlcad.mechanics.findings import Finding
 from mdlcad.mechanics.process import Plate, Process
 
@@ -47,12 +47,12 @@ class GuideLeaf:
     @property
     def _bent(self) -> float:
         """As long as it bends, mm."""
-        return self.length - 2.0 * shortening(self.wall, flat_root(self.fillet, 2))[0]
+        return self.length - 2.0 * shortening(self.wall, flat_root(self.fillet, 2, seat=Seat.BLOCK))[0]
 
     @property
     def _stretched(self) -> float:
         """As long as it stretches, mm."""
-        return self.length - 2.0 * shortening(self.wall, flat_root(self.fillet, 2))[1]
+        return self.length - 2.0 * shortening(self.wall, flat_root(self.fillet, 2, seat=Seat.BLOCK))[1]
 
     @property
     def _bending(self) -> float:
@@ -108,7 +108,7 @@ def guide_leaf(process: Process, plate: Plate, stroke: float, wall: float) -> Gu
     material, fillet = process.material(plate), process.machine.fillet
     notch = notch_factor(wall, fillet) if fillet else 1.0
     bent = math.sqrt(3.0 * wall * stroke * notch / (STROKE_SHARE * material.strain_limit))
-    length = bent + 2.0 * shortening(wall, flat_root(fillet, 2))[0]
+    length = bent + 2.0 * shortening(wall, flat_root(fillet, 2, seat=Seat.BLOCK))[0]
     rounded = round(math.ceil(length / STEP - 1e-9) * STEP, 6)
     return GuideLeaf(wall, rounded, plate.thickness, material.modulus, fillet)
 

@@ -15,7 +15,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from mdlcad.errors import UsageError
-from mdlcad.mechanics.fillet import flat_root, zones_of
+from mdlcad.mechanics.fillet import Zone, bar_root, zones_of
 from mdlcad.mechanics.flexure import RIGID, Sheet
 from mdlcad.mechanics.frame import TURN, Beam, Frame, Spring, X, Y, dof
 from mdlcad.mechanics.process import PlateRole, Process
@@ -126,6 +126,7 @@ class SpringPlan:
         near, far: x of the leaves of a bank and their walls, (x, wall above, wall below) each, outwards.
         stem, truss: widths in y of the stems and of the trusses; height: of the trusses' outer edges.
         fillet: radius at the leaves' roots.
+        block: half the width of the end block; clock: from the last leaf's centre line to the clock block.
     """
 
     near: tuple[tuple[float, float, float], ...]
@@ -134,16 +135,25 @@ class SpringPlan:
     truss: float
     height: float
     fillet: float
+    block: float
+    clock: float
 
 
 def spring_plan(process: Process, wall: float, height: float, clear: float) -> SpringPlan:
     """The plan that sizing draws: all leaves alike."""
     unit, gap = process.unit, process.machine.min_gap
-    first = unit.block_width / 2.0 + clear - gap / 2.0 + wall / 2.0
+    to_leaf = clear - gap / 2.0 + wall / 2.0
+    first = unit.block_width / 2.0 + to_leaf
     near = [first + i * (wall + gap) for i in range(unit.series_leaves)]
     far = [near[-1] + wall + clear + i * (wall + gap) for i in range(unit.series_leaves)]
     banks = [tuple((x, wall, wall) for x in bank) for bank in (near, far)]
-    return SpringPlan(banks[0], banks[1], unit.series_arm, unit.series_arm, height, process.machine.fillet)
+    arm, fillet = unit.series_arm, process.machine.fillet
+    return SpringPlan(banks[0], banks[1], arm, arm, height, fillet, unit.block_width / 2.0, to_leaf)
+
+
+_AT_LEAF = 0.3
+"""Compliance of a stem or truss where a leaf is rooted in it, over that beside it; from the computations of whole
+springs that ``fillet.Seat.BAR`` is from."""
 
 
 def spring_frame(process: Process, wall: float, height: float, clear: float) -> SpringFrame:
@@ -155,33 +165,49 @@ def spring_frame(process: Process, wall: float, height: float, clear: float) -> 
 
 
 def frame_of(plan: SpringPlan, sheet: Sheet) -> SpringFrame:
-    """A folded spring as beams: first the strained ones (``widths``), then those taken as rigid."""
+    """A folded spring as beams: first the strained ones (``widths``), then those taken as rigid.
+
+    Its leaves are short, so they shear as well, and so do stems and trusses.
+    """
     truss_y, face, edge = plan.height - plan.truss / 2.0, plan.height - plan.truss, plan.stem / 2.0
-    nodes = [(0.0, 0.0)]
+    nodes = [(0.0, 0.0), (plan.block, 0.0)]
     parts: list[tuple[Beam, float]] = []  # beams that may be strained, with their width
-    stiff: list[Beam] = []
-    stem = [0]
+    stiff = [sheet.beam(0, 1, plan.stem, RIGID)]
+    stem = [1]
     tops: dict[float, list[int]] = {1.0: [], -1.0: []}
     inmost, outmost = (plan.near[0][0], plan.far[-1][0]), (plan.near[-1][0], plan.far[0][0])
     for x, *walls in plan.near + plan.far:
         # stems end flush with a bank's last leaf, trusses with the spring's: no corner on that side
-        root = flat_root(plan.fillet, 1 if x in outmost else 2)
-        head = flat_root(plan.fillet, 1 if x in inmost else 2)
+        root = bar_root(plan.fillet, 1 if x in outmost else 2, plan.stem)
+        head = bar_root(plan.fillet, 1 if x in inmost else 2, plan.truss)
         centre = len(nodes)
         nodes.append((x, 0.0))
         if x != plan.far[0][0]:
-            parts.append((sheet.beam(stem[-1], centre, plan.stem), plan.stem))
+            before = 0.0 if len(stem) == 1 else walls[0] / 2.0
+            zones = _leafed(x - nodes[stem[-1]][0], before, walls[0] / 2.0)
+            parts.append((sheet.shearing(stem[-1], centre, plan.stem, zones), plan.stem))
         stem.append(centre)
         for (side, truss), wall in zip(tops.items(), walls, strict=True):
             foot = len(nodes)
             nodes += [(x, side * edge), (x, side * face), (x, side * truss_y)]
             stiff += [sheet.beam(centre, foot, wall, RIGID), sheet.beam(foot + 1, foot + 2, wall, RIGID)]
             zones = zones_of(face - edge, wall, root, head)
-            parts.append((sheet.beam(foot, foot + 1, wall, zones=zones), wall))
+            parts.append((sheet.shearing(foot, foot + 1, wall, zones), wall))
             if truss:
-                parts.append((sheet.beam(truss[-1], foot + 2, plan.truss), plan.truss))
+                zones = _leafed(x - nodes[truss[-1]][0], wall / 2.0, wall / 2.0)
+                parts.append((sheet.shearing(truss[-1], foot + 2, plan.truss, zones), plan.truss))
             truss.append(foot + 2)
-    return SpringFrame(nodes, [beam for beam, _ in parts] + stiff, [width for _, width in parts], stem[-1])
+    pin, last = len(nodes), plan.far[-1]
+    nodes.append((last[0] + plan.clock, 0.0))
+    zones = _leafed(plan.clock, last[1] / 2.0, 0.0)
+    parts.append((sheet.shearing(stem[-1], pin, plan.stem, zones), plan.stem))
+    return SpringFrame(nodes, [beam for beam, _ in parts] + stiff, [width for _, width in parts], pin)
+
+
+def _leafed(length: float, before: float, after: float) -> tuple[Zone, ...]:
+    """The stretches of a stem or truss that are stiffer for a leaf being rooted there, at either end of it."""
+    ends = ((0.0, before), (length - after, length))
+    return tuple(Zone(start, stop, _AT_LEAF, _AT_LEAF) for start, stop in ends if stop > start)
 
 
 @dataclass(frozen=True, slots=True)
@@ -221,5 +247,5 @@ def _solve(process: Process, law: UnitLaw, wall: float, height: float, clear: fl
     for beam, width in zip(made.beams, made.widths, strict=False):  # the rigid ones have no width
         moment = frame.wall_moment(beam, solution)
         strain = max(strain, moment * width / (2.0 * beam.bending))
-    turning = float(frame.condense([dof(0, TURN)], pin)[0, 0])
+    turning = float(Frame(made.nodes, made.beams).condense([dof(0, TURN)], pin)[0, 0])
     return float(solution.reactions[dof(0, X)]), strain, turning

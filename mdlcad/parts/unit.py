@@ -11,6 +11,7 @@ from shapely import Polygon
 from shapely.affinity import translate
 
 from mdlcad.mechanics.sizes import UnitSize
+from mdlcad.mechanics.unit import beam_heights
 from mdlcad.parts import palette
 from mdlcad.parts.body import Body, BodyKind
 from mdlcad.parts.shapes import box, cut, filleted, join, only, square, strip
@@ -29,7 +30,7 @@ def unit_body(stack: Stack, hub: Hub, unit: UnitSize, pinned: Sequence[Side]) ->
     left, right = hub.x - rules.hub_half, hub.x + rules.hub_half
     end = right + template.span
     swaying = [box(left, hub.y - high, right, hub.y + high)]
-    for y in beam_heights(stack):
+    for y in beam_heights(stack.process):
         swaying.append(strip([(left - template.span, hub.y + y), (left, hub.y + y)], template.beam_wall))
         swaying.append(strip([(right, hub.y + y), (end, hub.y + y)], template.beam_wall))
     block = box(end, hub.y - high, end + template.block_width, hub.y + high)
@@ -82,14 +83,6 @@ def _between(edge: tuple[tuple[float, ...], tuple[float, ...]], x: float, y: flo
     return shapely.MultiPoint(
         [(x0 - x, y0 - y), (x0 + x, y0 + y), (x1 - x, y1 - y), (x1 + x, y1 + y)]
     ).convex_hull.buffer(0.0)
-
-
-def beam_heights(stack: Stack) -> list[float]:
-    """Heights of the beams of one side, from the shuttle's centre."""
-    template = stack.process.unit
-    if template.beams == 1:
-        return [0.0]
-    return [template.pair_spacing * (i / (template.beams - 1) - 0.5) for i in range(template.beams)]
 
 
 def hub_pin_x(stack: Stack, hub: Hub, side: Side) -> float:

@@ -6,7 +6,7 @@ import math
 
 from shapely import LineString, Point, Polygon
 
-from mdlcad.mechanics.fillet import Root, eye_root, flat_root
+from mdlcad.mechanics.fillet import Root, Seat, eye_root, flat_root
 from mdlcad.parts.shapes import ARC_STEP
 
 _LOOK = 2.0
@@ -43,12 +43,13 @@ def fillet_at(section: Polygon, corner: tuple[float, float], way: tuple[float, f
     return 0.0
 
 
-def root_at(section: Polygon, x: float, wall: tuple[float, float], out: float) -> Root:
+def root_at(section: Polygon, x: float, wall: tuple[float, float], out: float, seat: Seat) -> Root:
     """The root of a wall that spans ``wall`` in y and runs from a face at ``x`` towards ``out`` (+1 or -1) along x."""
-    low, high = wall
-    found = [fillet_at(section, (x, edge), (out, way)) for edge, way in ((low, -1.0), (high, 1.0))]
-    radii = [radius for radius in found if radius]
-    return flat_root(sum(radii) / len(radii), len(radii)) if radii else flat_root(0.0, 0)
+    corners = [((x, edge), (out, way)) for edge, way in zip(wall, (-1.0, 1.0), strict=True)]
+    radii = [radius for radius in (fillet_at(section, *corner) for corner in corners) if radius]
+    if radii:
+        return flat_root(sum(radii) / len(radii), len(radii), seat=seat)
+    return flat_root(0.0, sum(is_inner(section, *corner) for corner in corners), seat=seat)
 
 
 def seen_eye_root(section: Polygon, front: float, middle: float, wall: float, eye: float, out: float) -> Root:

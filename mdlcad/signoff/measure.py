@@ -14,7 +14,7 @@ from shapely import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from mdlcad.errors import SignoffError
-from mdlcad.mechanics.fillet import Root
+from mdlcad.mechanics.fillet import Root, Seat
 from mdlcad.mechanics.flexure import RIGID, Chain, Sheet, mirrored
 from mdlcad.mechanics.frame import Beam, Frame
 from mdlcad.mechanics.series import SpringPlan
@@ -108,7 +108,7 @@ def _unit(section: Polygon) -> UnitSeen:
     right_walls = [span for span in spans_at_x(section, shuttle[1] + 1.0) if _width(span) < high_y - y]
 
     def beam(wall: Span, start: float, end: float) -> BeamSeen:
-        roots = root_at(section, start, wall, 1.0), root_at(section, end, wall, -1.0)
+        roots = root_at(section, start, wall, 1.0, Seat.BLOCK), root_at(section, end, wall, -1.0, Seat.BLOCK)
         return BeamSeen(_middle(wall) - y, _width(wall), end - start, roots)
 
     left = tuple(beam(wall, low_x, shuttle[0]) for wall in left_walls)
@@ -127,13 +127,18 @@ def _unit(section: Polygon) -> UnitSeen:
     shift_far = sum(leaf.head - leaf.root for leaf in far) / bank
     preload = shift_near + shift_far
     centre = _middle(block)
+    fillet = _mean([radius for leaf in leaves for radius in leaf.fillets])
+    beside = spans_at_y(section, y + root + fillet + _TOUCH)
+    clock = next(span[0] for span in beside if span[0] > far[-1].root + far[-1].above)
     plan = SpringPlan(
         near=tuple((leaf.root - centre, leaf.above, leaf.below) for leaf in near),
         far=tuple((leaf.root + preload - centre, leaf.above, leaf.below) for leaf in far),
         stem=_width(stem),
         truss=thick,
         height=high_y - y,
-        fillet=_mean([radius for leaf in leaves for radius in leaf.fillets]),
+        fillet=fillet,
+        block=_width(block) / 2.0,
+        clock=clock - far[-1].root,
     )
     return UnitSeen(_middle(shuttle), y, _width(shuttle) / 2.0, left, right, plan, preload)
 
@@ -308,10 +313,10 @@ def _meander(
     bends = tuple(_bend(section, nodes, walls, i, face, y, out) for i in range(1, len(nodes) - 1))
     first, last = walls[0] / 2.0, walls[-1] / 2.0
     middle = y + nodes[0][1]
-    start = root_at(section, face, (middle - first, middle + first), out)
+    start = root_at(section, face, (middle - first, middle + first), out, Seat.RIGID)
     middle = y + nodes[-1][1]
     if eye is None:
-        far = root_at(section, end, (middle - last, middle + last), -out)
+        far = root_at(section, end, (middle - last, middle + last), -out, Seat.RIGID)
     else:
         far = seen_eye_root(section, eye.front, middle, walls[-1], eye.radius, -out)
     return MeanderSeen(tuple(nodes), tuple(walls), (start, far), bends, face, y, out)

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mdlcad.mechanics.fillet import shortening
+from mdlcad.mechanics.fillet import shear_length, shortening
 from mdlcad.mechanics.fit import Scale, in_row
 from mdlcad.mechanics.flexure import Chain, Sheet, deflect, signal_matrix
 from mdlcad.mechanics.frame import TURN, Array, X, dof
@@ -19,6 +19,7 @@ from mdlcad.mechanics.leaves import LargeLeaf, LeafKind, higher_terms
 from mdlcad.mechanics.reduced import UnitNumbers
 from mdlcad.mechanics.series import SpringPlan, frame_of, spring_stiffness
 from mdlcad.mechanics.strains import cases_of
+from mdlcad.mechanics.unit import end_block_give
 from mdlcad.signoff.measure import BeamSeen, UnitSeen, widened
 
 
@@ -65,8 +66,9 @@ def unit_numbers(seen: UnitSeen, sheet: Sheet, beams: float = 0.0, leaves: float
     """
 
     def less(beam: BeamSeen) -> tuple[float, float]:
-        taken = [shortening(beam.wall + beams, widened(root, beams)) for root in beam.roots]
-        return sum(bend for bend, _ in taken), sum(stretch for _, stretch in taken)
+        wall = beam.wall + beams
+        taken = [shortening(wall, widened(root, beams)) for root in beam.roots]
+        return sum(bend for bend, _ in taken) - shear_length(wall, beam.span), sum(stretch for _, stretch in taken)
 
     def bending(side: Sequence[BeamSeen]) -> float:
         return sum(
@@ -91,9 +93,13 @@ def unit_numbers(seen: UnitSeen, sheet: Sheet, beams: float = 0.0, leaves: float
         plan.truss + leaves,
         plan.height,
         max(0.0, plan.fillet - leaves / 2.0),
+        plan.block,
+        plan.clock,
     )
     spring = spring_stiffness(frame_of(thick, sheet), bending(seen.right), turn)
-    axial = 1.0 / (1.0 / stretching(seen.left) + 1.0 / stretching(seen.right) + 1.0 / spring.push)
+    stretch, heights = sheet.modulus * sheet.depth, [beam.y for beam in seen.right]
+    block = end_block_give(stretch, 2.0 * plan.block, plan.stem, heights)
+    axial = 1.0 / (1.0 / stretching(seen.left) + 1.0 / stretching(seen.right) + block + 1.0 / spring.push)
     return UnitNumbers(count, span, one, axial, spring.across)
 
 

@@ -56,7 +56,7 @@ class LargeFrame:
             chain.append(beam.end)
             step = frame.length(beam) / count
             elements += [
-                Beam(a, b, beam.axial, beam.bending, _part_of(beam.zones, cut * step, (cut + 1) * step))
+                Beam(a, b, beam.axial, beam.bending, _part_of(beam.zones, cut * step, (cut + 1) * step), beam.shear)
                 for cut, (a, b) in enumerate(pairwise(chain))
             ]
             self.part += [index] * count
@@ -72,7 +72,8 @@ class LargeFrame:
         self._length = np.hypot(chord[:, 0], chord[:, 1])
         zones = [(float(length), e.zones) for length, e in zip(self._length, elements, strict=True)]
         self._stretching = self._axial * [stretch_factor(*item) for item in zones]
-        self._turning = np.array([bending_matrix(*item) for item in zones]).T
+        turning = [bending_matrix(*item, e.shear) for item, e in zip(zones, elements, strict=True)]
+        self._turning = np.array(turning).T
         bare = [bare_wall(*item) for item in zones]
         self._bare = np.array([item or (0.0, 0.0) for item in bare]).T
         self._strained = np.array([item is not None for item in bare])

@@ -5,6 +5,7 @@ What sizing takes as rigid (blocks, hub) is rigid here too; every other turn and
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,7 +16,7 @@ from mdlcad.mechanics.flexure import RIGID, Sheet
 from mdlcad.mechanics.frame import TURN, Frame, X, Y, dof
 from mdlcad.mechanics.process import PlateRole, Process
 from mdlcad.mechanics.series import SeriesSpring, spring_frame
-from mdlcad.mechanics.unit import beam_roots
+from mdlcad.mechanics.unit import beam_heights, beam_roots, end_block_arm
 
 _CUTS_BEAM = 12
 _CUTS_LEAF = 6
@@ -46,7 +47,6 @@ def unit_model(process: Process, series: SeriesSpring) -> UnitModel:
     material = process.material(plate)
     sheet = Sheet(material.modulus, plate.thickness, material.strain_limit)
     half, wall = unit.block_width / 2.0, unit.beam_wall
-    heights = np.linspace(-unit.pair_spacing / 2.0, unit.pair_spacing / 2.0, unit.beams)
     # the spring's own frame begins at the end block's middle
     spring = spring_frame(process, series.wall, series.height, series.clear)
     nodes = list(spring.nodes)
@@ -55,17 +55,23 @@ def unit_model(process: Process, series: SeriesSpring) -> UnitModel:
     hub = len(nodes)
     nodes.append((-half - unit.span - half, 0.0))
     ribs = []
-    for number, y in enumerate(heights):
+    for number, y in enumerate(beam_heights(process)):
         at_rib, at_block = beam_roots(process, number)
         rib, left, right, end = range(len(nodes), len(nodes) + 4)
         x_hub = nodes[hub][0]
         nodes += [(x_hub - half - unit.span, y), (x_hub - half, y), (x_hub + half, y), (-half, y)]
         sides = zones_of(unit.span, wall, at_rib, at_block), zones_of(unit.span, wall, at_block, at_block)
         flexible += [
-            (sheet.beam(a, b, wall, zones=zones), wall)
+            (sheet.shearing(a, b, wall, zones), wall)
             for a, b, zones in ((rib, left, sides[0]), (right, end, sides[1]))
         ]
-        stiff += [sheet.beam(a, b, wall, RIGID) for a, b in ((left, hub), (hub, right), (end, 0))]
+        stiff += [sheet.beam(a, b, wall, RIGID) for a, b in ((left, hub), (hub, right))]
+        tip, foot, arm = 0, 0, end_block_arm(y, unit.series_arm)
+        if arm:  # of the end block; it begins within the stem
+            tip, foot = len(nodes), len(nodes) + 1
+            nodes += [(0.0, y), (0.0, y - math.copysign(arm, y))]
+            stiff += [sheet.shearing(foot, tip, unit.block_width), sheet.beam(foot, 0, wall, RIGID)]
+        stiff.append(sheet.beam(end, tip, wall, RIGID))
         ribs.append(rib)
     beams = [beam for beam, _ in flexible] + stiff
     leaves = len(spring.widths)

@@ -19,7 +19,7 @@ from exudyn.itemInterface import (
 from mdlcad.mechanics.frame import Frame
 
 _SHEAR = 100.0
-"""Shear stiffness in multiples of E A: the beams of the reduced models do not shear."""
+"""Shear stiffness in multiples of E A, of beams that are taken not to shear."""
 
 
 def forces(frame: Frame, cuts: Sequence[int], prescribed: Mapping[int, float], steps: int) -> dict[int, float]:
@@ -52,7 +52,7 @@ def forces(frame: Frame, cuts: Sequence[int], prescribed: Mapping[int, float], s
                     massPerLength=1e-9,
                     crossSectionInertia=1e-12,
                     axialStiffness=beam.axial / stretch,
-                    shearStiffness=_SHEAR * beam.axial,
+                    shearStiffness=beam.bending / beam.shear if beam.shear else _SHEAR * beam.axial,
                     bendingStiffness=beam.bending / bend,
                 )
             )
