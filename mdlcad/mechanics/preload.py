@@ -53,6 +53,28 @@ def self_terms(
     return total
 
 
+def most_self_terms(
+    network: Network, couplers: Sequence[CouplerSize], biases: Sequence[BiasSize], law: UnitLaw, ratio: float
+) -> dict[str, float]:
+    """The same with couplers drawn stiffer for carriers that are rigid, or ``ratio`` times as stiff as they: the more.
+
+    Over a carrier of K a coupler is drawn 1 / (1 - s / K) times as stiff, to half a step. With that its source gets
+    what it was sized for, but the target of a rocker more: s f - c^2 f^2 / (K + f s), and its c is less than its s.
+    """
+    total = {mass.name: 0.0 for mass in network.masses}
+    for coupling, coupler in zip(network.couplings, couplers, strict=True):
+        leaf = coupler.leaf
+        rows = []
+        for carrier, ideal in ((RIGID_CARRIER, 1.0), (ratio * leaf.own, 1.0 / (1.0 - 1.0 / ratio))):
+            factor = ideal + COUPLER_STEP / 2.0
+            rows.append(in_row(factor * leaf.own, factor * leaf.coupling, factor * leaf.own, carrier))
+        total[coupling.source] += max(row.source for row in rows) / law.stiffness_unit
+        total[coupling.target] += max(row.target for row in rows) / law.stiffness_unit
+    for bias in biases:
+        total[bias.mass] += bias.self_stiffness
+    return total
+
+
 @dataclass(frozen=True, slots=True)
 class Compensator:
     """Solves preloads: ``asked`` is the network's k at p = 1 of every mass."""

@@ -10,7 +10,7 @@ from statistics import median_low
 from mdlcad.errors import UsageError
 from mdlcad.mechanics.findings import Finding, findings_of
 from mdlcad.mechanics.leaves import LeafKind, LeafSize, bias_offset, eye_radius, size_leaf, trim
-from mdlcad.mechanics.preload import COUPLER_STEP, compensator, room_for, self_terms
+from mdlcad.mechanics.preload import compensator, most_self_terms, room_for, self_terms
 from mdlcad.mechanics.process import PlateRole, Process
 from mdlcad.mechanics.rules import LayoutRules
 from mdlcad.mechanics.series import SeriesSpring, series_spring
@@ -61,8 +61,7 @@ def size(network: Network, process: Process, peak: Mapping[str, float]) -> Sizin
     solver = compensator(network, process, law, series, peak, absorbed)
     try:
         preloads, softest = solver.preloads(absorbed), solver.preloads(softened)
-        # couplers drawn stiffer for their carriers may overdo it by half a step
-        most = solver.preloads({name: (1.0 + COUPLER_STEP / 2.0) * value for name, value in absorbed.items()})
+        most = solver.preloads(most_self_terms(network, couplers, biases, law, process.link.carrier_ratio))
     except ArithmeticError as error:
         raise UsageError(f"process {process.name}: unit: {error}") from error
     strains = unit_strains(network, process, law, series, preloads, peak)

@@ -48,7 +48,7 @@ def small_network() -> Network:
         )
         for i in range(6)
     )
-    couplings = (Coupling("m0", "m3", 0.3, 0.3), Coupling("m1", "m4", -0.3, 0.5))
+    couplings = (Coupling("m0", "m3", 0.25, 0.3), Coupling("m1", "m4", -0.3, 0.5))
     dynamics = Dynamics(inertia=0.05, damping=0.25, quartic=1.0, period=10.0, phases=3)
     return Network("small", "parametron", dynamics, masses, couplings, (), (), (), None, 4)
 

@@ -51,7 +51,7 @@ def test_tilt_is_force_times_height(device: Device) -> None:
     found = carrier_stiffnesses(device.network, device.placement, device.layout, device.sizing, process)[0]
     stack = [process.plate(name).thickness for name in ("unit", "V", "H0")]
     height = stack[0] / 2.0 + stack[1] + stack[2] / 2.0 + 2.0 * process.stack.z_gap
-    force = 0.3 * law.stiffness_unit * 2.0 * 1.8 * process.unit.throw_unit
+    force = 0.25 * law.stiffness_unit * 2.0 * 1.8 * process.unit.throw_unit
     assert found.tilt == pytest.approx(force * height / law.shuttle_tilt, rel=1e-3)
 
 

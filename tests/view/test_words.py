@@ -25,7 +25,7 @@ def test_a_unit_s_card_has_the_mass_s_numbers_and_its_nets() -> None:
     assert card.subject == "unit m3"
     assert (found["phase"], found["k"], found["bias q"]) == ("0", "3.5 - 3 p", "none")
     assert found["polarity"].startswith("+1")
-    assert found["from"] == "m0 (+0.3)" and found["to"] == "nothing"
+    assert found["from"] == "m0 (+0.25)" and found["to"] == "nothing"
     assert facts("unit.m2")["bias q"] == "+0.5"
     place = next(place for place in BUILT.placement.masses if place.mass == "m3")
     assert found["place"] == f"column 1, row 1, at ({place.x:.1f}, {place.y:.1f}) mm"

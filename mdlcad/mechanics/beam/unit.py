@@ -20,6 +20,7 @@ from mdlcad.mechanics.unit import beam_heights, beam_roots, end_block_arm
 
 _CUTS_BEAM = 12
 _CUTS_LEAF = 6
+_CUTS_ARM = 3
 _AMPLITUDES = 5
 
 
@@ -52,6 +53,7 @@ def unit_model(process: Process, series: SeriesSpring) -> UnitModel:
     nodes = list(spring.nodes)
     flexible = list(zip(spring.beams, spring.widths, strict=False))
     stiff = spring.beams[len(spring.widths) :]
+    arms = []  # of the end block: they bend, and are so thick that strain is elsewhere
     hub = len(nodes)
     nodes.append((-half - unit.span - half, 0.0))
     ribs = []
@@ -62,21 +64,21 @@ def unit_model(process: Process, series: SeriesSpring) -> UnitModel:
         nodes += [(x_hub - half - unit.span, y), (x_hub - half, y), (x_hub + half, y), (-half, y)]
         sides = zones_of(unit.span, wall, at_rib, at_block), zones_of(unit.span, wall, at_block, at_block)
         flexible += [
-            (sheet.shearing(a, b, wall, zones), wall)
-            for a, b, zones in ((rib, left, sides[0]), (right, end, sides[1]))
+            (sheet.shearing(a, b, wall, zones), wall) for a, b, zones in ((rib, left, sides[0]), (right, end, sides[1]))
         ]
         stiff += [sheet.beam(a, b, wall, RIGID) for a, b in ((left, hub), (hub, right))]
         tip, foot, arm = 0, 0, end_block_arm(y, unit.series_arm)
-        if arm:  # of the end block; it begins within the stem
+        if arm:  # it begins within the stem
             tip, foot = len(nodes), len(nodes) + 1
             nodes += [(0.0, y), (0.0, y - math.copysign(arm, y))]
-            stiff += [sheet.shearing(foot, tip, unit.block_width), sheet.beam(foot, 0, wall, RIGID)]
+            arms.append(sheet.shearing(foot, tip, unit.block_width))
+            stiff.append(sheet.beam(foot, 0, wall, RIGID))
         stiff.append(sheet.beam(end, tip, wall, RIGID))
         ribs.append(rib)
-    beams = [beam for beam, _ in flexible] + stiff
+    beams = [beam for beam, _ in flexible] + arms + stiff
     leaves = len(spring.widths)
-    cuts = [_CUTS_LEAF] * leaves + [_CUTS_BEAM] * (len(flexible) - leaves) + [1] * len(stiff)
-    widths = [width for _, width in flexible] + [0.0] * len(stiff)
+    cuts = [_CUTS_LEAF] * leaves + [_CUTS_BEAM] * (len(flexible) - leaves) + [_CUTS_ARM] * len(arms) + [1] * len(stiff)
+    widths = [width for _, width in flexible] + [0.0] * (len(arms) + len(stiff))
     return UnitModel(Frame(nodes, beams), cuts, ribs, widths, leaves, hub, spring.pin)
 
 

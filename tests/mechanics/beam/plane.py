@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
-from scipy.sparse import coo_matrix
+from scipy.sparse import coo_matrix, csc_matrix
 from scipy.sparse.linalg import splu
 from scipy.spatial import Delaunay
 from shapely import Polygon
@@ -62,8 +63,36 @@ def _cross(a: Array, b: Array) -> Array:
     return np.asarray(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
 
 
-def pulled(points: Array, corners: NDArray[np.intp], held_x: float, moved_x: float) -> Found:
-    """What ``mesh`` made, of modulus 1, held where x <= ``held_x`` and moved by 1 in y where x >= ``moved_x``."""
+@dataclass(frozen=True)
+class _Elements:
+    """nodes: float[n, 2]; elements: six nodes each; grad: of their area coordinates; whole: stiffness matrix."""
+
+    nodes: Array
+    elements: NDArray[np.intp]
+    grad: Array
+    whole: csc_matrix
+
+    @property
+    def places(self) -> NDArray[np.intp]:
+        return np.stack([2 * self.elements, 2 * self.elements + 1], -1).reshape(len(self.elements), 12)
+
+    def strains(self, place: tuple[float, float, float]) -> Array:
+        """Strain of every element at area coordinates ``place`` from its displacements: float[m, 3, 12]."""
+        return _strains(self.grad, place)
+
+
+def _strains(grad: Array, place: tuple[float, float, float]) -> Array:
+    shapes = [(4 * place[i] - 1) * grad[:, i] for i in range(3)]
+    shapes += [4 * (place[i] * grad[:, j] + place[j] * grad[:, i]) for i, j in ((0, 1), (1, 2), (2, 0))]
+    b = np.zeros((len(grad), 3, 12))
+    for k, one in enumerate(shapes):
+        b[:, 0, 2 * k] = b[:, 2, 2 * k + 1] = one[:, 0]
+        b[:, 1, 2 * k + 1] = b[:, 2, 2 * k] = one[:, 1]
+    return b
+
+
+def _assembled(points: Array, corners: NDArray[np.intp]) -> _Elements:
+    """What ``mesh`` made, of modulus and depth 1."""
     edges = np.sort(corners[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
     unique, number = np.unique(edges, axis=0, return_inverse=True)
     nodes = np.concatenate([points, points[unique].mean(axis=1)])
@@ -79,24 +108,20 @@ def pulled(points: Array, corners: NDArray[np.intp], held_x: float, moved_x: flo
     )
     grad = grad / double[:, None, None]
     elastic = np.array([[1, POISSON, 0], [POISSON, 1, 0], [0, 0, (1 - POISSON) / 2]]) / (1 - POISSON**2)
-
-    def strains(place: tuple[float, float, float]) -> Array:
-        """Strain of every element at area coordinates ``place`` from its displacements: float[m, 3, 12]."""
-        shapes = [(4 * place[i] - 1) * grad[:, i] for i in range(3)]
-        shapes += [4 * (place[i] * grad[:, j] + place[j] * grad[:, i]) for i, j in ((0, 1), (1, 2), (2, 0))]
-        b = np.zeros((len(elements), 3, 12))
-        for k, one in enumerate(shapes):
-            b[:, 0, 2 * k] = b[:, 2, 2 * k + 1] = one[:, 0]
-            b[:, 1, 2 * k + 1] = b[:, 2, 2 * k] = one[:, 1]
-        return b
-
     local = np.zeros((len(elements), 12, 12))
     for p, q in _THREE:
-        b = strains((1 - p - q, p, q))
+        b = _strains(grad, (1 - p - q, p, q))
         local += (double / 6)[:, None, None] * (b.transpose(0, 2, 1) @ elastic @ b)
     places = np.stack([2 * elements, 2 * elements + 1], -1).reshape(len(elements), 12)
     row, column = np.repeat(places, 12, axis=1).ravel(), np.tile(places, (1, 12)).ravel()
     whole = coo_matrix((local.ravel(), (row, column)), shape=(2 * len(nodes),) * 2).tocsc()
+    return _Elements(nodes, elements, grad, whole)
+
+
+def pulled(points: Array, corners: NDArray[np.intp], held_x: float, moved_x: float) -> Found:
+    """What ``mesh`` made, of modulus 1, held where x <= ``held_x`` and moved by 1 in y where x >= ``moved_x``."""
+    made = _assembled(points, corners)
+    nodes, whole = made.nodes, made.whole
     still, moved = np.flatnonzero(nodes[:, 0] <= held_x + 1e-9), np.flatnonzero(nodes[:, 0] >= moved_x - 1e-9)
     given = np.concatenate([2 * still, 2 * still + 1, 2 * moved, 2 * moved + 1])
     u = np.zeros(2 * len(nodes))
@@ -106,7 +131,33 @@ def pulled(points: Array, corners: NDArray[np.intp], held_x: float, moved_x: flo
     force = float((whole[2 * moved + 1] @ u).sum())
     worst = np.zeros(len(nodes))
     for k, place in enumerate(((1, 0, 0), (0, 1, 0), (0, 0, 1), (0.5, 0.5, 0), (0, 0.5, 0.5), (0.5, 0, 0.5))):
-        x, y, shear = np.einsum("mij,mj->im", strains(place), u[places])
+        x, y, shear = np.einsum("mij,mj->im", made.strains(place), u[made.places])
         principal = np.abs(x + y) / 2 + np.hypot((x - y) / 2, shear / 2)
-        np.maximum.at(worst, elements[:, k], principal)
+        np.maximum.at(worst, made.elements[:, k], principal)
     return Found(force, nodes, worst)
+
+
+@dataclass(frozen=True)
+class Grip:
+    """Holds an outline where ``where`` is true of its nodes float[n, 2], and moves it there as a rigid body."""
+
+    where: Callable[[Array], NDArray[np.bool_]]
+    about: tuple[float, float]
+
+
+def gripped(points: Array, corners: NDArray[np.intp], grips: Sequence[Grip]) -> Array:
+    """Stiffness of what ``mesh`` made, of modulus and depth 1, at x, y and turn of every grip: float[3 g, 3 g]."""
+    made = _assembled(points, corners)
+    nodes, size = made.nodes, 2 * len(made.nodes)
+    moves = np.zeros((size, 3 * len(grips)))
+    for number, grip in enumerate(grips):
+        held = np.flatnonzero(grip.where(nodes))
+        moves[2 * held, 3 * number] = moves[2 * held + 1, 3 * number + 1] = 1.0
+        moves[2 * held, 3 * number + 2] = grip.about[1] - nodes[held, 1]
+        moves[2 * held + 1, 3 * number + 2] = nodes[held, 0] - grip.about[0]
+    given = np.flatnonzero(np.abs(moves).sum(axis=1))
+    given = np.unique(np.concatenate([given - given % 2, given - given % 2 + 1]))
+    free = np.setdiff1d(np.arange(size), given)
+    across = np.asarray(made.whole[free] @ moves)
+    inner = splu(made.whole[free][:, free]).solve(across)
+    return np.asarray(moves.T @ (made.whole @ moves) - across.T @ inner)
