@@ -33,7 +33,7 @@ def test_the_worked_example_of_the_manual() -> None:
     assert law.force_unit == pytest.approx(1.76147, abs=1e-5)
     assert law.axial_stiffness == pytest.approx(41.358, abs=1e-3)
     assert law.series_stiffness == pytest.approx(55.646, abs=1e-3)
-    assert law.stroke_per_k == pytest.approx(0.16957, abs=1e-5)
+    assert law.stroke_per_k == pytest.approx(0.16955, abs=1e-5)
 
 
 def test_the_potential_has_the_networks_coefficients() -> None:
