@@ -102,7 +102,7 @@ class Pass:
 
     def _gate_before(self, key: Key, selection: Selection) -> Key | None:
         """The phase in which the earlier network had the gate of ``key``'s node, if it was another phase."""
-        phases = [replace(key, phase=phase) for phase in range(PHASES)] if key.role is Role.LOGIC else []
+        phases = [key._replace(phase=phase) for phase in range(PHASES)] if key.role is Role.LOGIC else []
         if not phases or self._graph.subject.is_input(key.of[0]) or any(twin in selection.chosen for twin in phases):
             return None
         had = [twin for twin in phases if 0 in self._graph.strange.get(twin, ())[1:]]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import NamedTuple
 
 from mdlcad.mapping.threshold import Threshold
 from mdlcad.mapping.tickring import RingPlan
@@ -29,9 +30,8 @@ class Role(StrEnum):
     TICK = "tick"
 
 
-@dataclass(frozen=True, slots=True, order=True)
-class Key:
-    """A planned mass: its role, what it is of, and its phase.
+class Key(NamedTuple):
+    """A planned mass: its role, what it is of, and its phase. A tuple, as the search hashes millions of them.
 
     ``of`` is (node,) for SENSOR and LOGIC, (literal,) for LOAD, (load or -1, literal) for TERM, (register index,) for
     HOLD, STORE and FOLLOW, (output index,) for PORT, (stage,) for STAGE and () for TICK. ``twin`` counts the masses

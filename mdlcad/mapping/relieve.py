@@ -39,7 +39,7 @@ class _Web:
 
     def split(self, key: Key, price: dict[Key, int]) -> None:
         """Add a twin of ``key`` and give it targets of about half the price."""
-        twin = replace(key, twin=1 + max(other.twin for other in self.masses if replace(other, twin=key.twin) == key))
+        twin = key._replace(twin=1 + max(other.twin for other in self.masses if other._replace(twin=key.twin) == key))
         mass = self.masses[key]
         self.masses[twin] = replace(mass, key=twin)
         for source, weight in zip(mass.sources, mass.function.weights, strict=True):

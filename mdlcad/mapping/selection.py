@@ -10,6 +10,8 @@ from mdlcad.mapping.threshold import Threshold
 from mdlcad.mapping.tickring import LEAST_CYCLES, plan_ring
 
 _NEVER = -(10**6)
+_TIMED = frozenset({Role.LOGIC, Role.PORT, Role.STORE, Role.FOLLOW})
+"""Masses that change when sensors or registers do."""
 
 
 @dataclass(slots=True)
@@ -39,10 +41,10 @@ def arrivals(graph: OptionGraph, selection: Selection, register_cycle: int, sens
     """The last cycle in which each made mass can change, if the sensors change in ``sensor_cycle`` and the registers in
     ``register_cycle``. Masses of the registers other than STORE and FOLLOW, and the tick, are left out."""
     found: dict[Key, int] = {}
-    stack = sorted(selection.chosen, reverse=True)
+    stack = list(selection.chosen)
     while stack:
         key = stack[-1]
-        if key in found or key.role not in (Role.LOGIC, Role.PORT, Role.STORE, Role.FOLLOW):
+        if key in found or key.role not in _TIMED:
             stack.pop()
             continue
         if key.role is Role.STORE:
@@ -52,13 +54,13 @@ def arrivals(graph: OptionGraph, selection: Selection, register_cycle: int, sens
         if not option.sources:
             found[stack.pop()] = sensor_cycle if key.role is Role.LOGIC else _NEVER
             continue
-        relevant = [s for s in option.sources if s.role in (Role.LOGIC, Role.PORT, Role.STORE, Role.FOLLOW)]
+        relevant = [source for source in option.sources if source.role in _TIMED]
         missing = [source for source in relevant if source not in found]
         if missing:
             stack += missing
         else:
             late = 1 if key.phase == 0 else 0
-            found[stack.pop()] = max((found[source] + late for source in relevant), default=register_cycle)
+            found[stack.pop()] = max([found[source] for source in relevant]) + late if relevant else register_cycle
     return found
 
 
