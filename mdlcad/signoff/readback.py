@@ -51,13 +51,23 @@ def _read_solid(path: Path, name: str, solid: Any) -> ReadBody:
     bottoms = [
         face
         for face in solid.Faces()
-        if face.geomType() == "PLANE" and face.normalAt().z < -0.999 and abs(face.Center().z - box.zmin) < 1e-6
+        if _is_level(face) and face.normalAt().z < -0.999 and abs(face.Center().z - box.zmin) < 1e-6
     ]
     if len(bottoms) != 1:
         raise UsageError(f"{path.name}: {name} has {len(bottoms)} bottom faces, a plate's body has one")
     bottom = bottoms[0]
     section = Polygon(_corners(bottom.outerWire()), [_corners(wire) for wire in bottom.innerWires()])
     return ReadBody(name, section, box.zmin, box.zmax - box.zmin, solid.Volume())
+
+
+def _is_level(face: Any) -> bool:
+    """Whether a face lies in a plane across z; most of a prism's are walls, and are to be told quickly."""
+    from OCP.BRepAdaptor import BRepAdaptor_Surface
+    from OCP.GeomAbs import GeomAbs_SurfaceType
+
+    surface = BRepAdaptor_Surface(face.wrapped, False)
+    is_plane = surface.GetType() == GeomAbs_SurfaceType.GeomAbs_Plane
+    return bool(is_plane and abs(surface.Plane().Axis().Direction().Z()) > 0.999)
 
 
 def _corners(wire: Any) -> list[tuple[float, float]]:
