@@ -39,8 +39,9 @@ def step_assembly(design: str, bodies: Sequence[Body]) -> bytes:
     children = []
     for body in bodies:
         section = body.assembled if body.assembled is not None else body.section
-        origin = np.floor(np.asarray(section.bounds[:2]))
-        local = [np.round(ring - origin, 6) for ring in rings(section)]
+        # from its lower left corner, so that equal sections are one shape wherever they are (and no zero is negative)
+        origin = np.round(section.bounds[:2], 6)
+        local = [np.round(ring - origin, 6) + 0.0 for ring in rings(section)]
         key = (round(body.thickness, 6), *(ring.tobytes() for ring in local))
         if key not in shapes:
             shapes[key] = _prism(body.name, section, local, body.thickness)
