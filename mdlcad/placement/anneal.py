@@ -16,6 +16,13 @@ from mdlcad.placement.tracks import track_cost
 
 HOME_SIDE = 2
 """Column of State.home: the channel side that a coupling should keep."""
+NEAR = (2, 24)
+"""How many columns and rows away from its own slot a mass is tried, where packing is careful."""
+EVERYWHERE = np.array([-1, 0, 0], np.int32)
+BESIDE = 4
+"""Rows above and below a trunk without a track, or a row, whose trunks may be to blame."""
+ASIDE = 12
+"""Rows above and below a spot to which its trouble may be pushed aside, as into the channels beside its own."""
 REFRESH = 500
 """Moves after which the masses that broken rules are about are listed anew."""
 
@@ -84,32 +91,54 @@ def _propose(p: Problem, s: State, mass: int, random: npt.NDArray[np.uint64]) ->
         row = p.slot[at, 1] + int(draw(random) * 7) - 3
         if 0 <= column < p.slot_at.shape[0] and 0 <= row < p.slot_at.shape[1] and p.slot_at[column, row] >= 0:
             return int(p.slot_at[column, row])
+    if s.careful[0]:
+        # far from where it is, a mass of a large network has no business
+        at = s.mass[mass, SLOT]
+        column = p.slot[at, 0] + int(draw(random) * (2 * NEAR[0] + 1)) - NEAR[0]
+        row = p.slot[at, 1] + int(draw(random) * (2 * NEAR[1] + 1)) - NEAR[1]
+        inside = 0 <= column < p.slot_at.shape[0] and 0 <= row < p.slot_at.shape[1] and p.slot_at[column, row] >= 0
+        return int(p.slot_at[column, row] if inside else at)
     return int(draw(random) * len(p.slot))
 
 
 @part
-def _troubled(p: Problem, s: State, tracks: Floats, only: int, found: Ints, seen: Ints) -> int:
-    """List the masses that broken rules are about: their trunks share a band with one, or they meet a row with one.
+def _beside(s: State, band: int, low: int, high: int, found: Ints, seen: Ints, n: int) -> int:
+    """List the masses whose trunks in a band meet rows low..high."""
+    for i in range(s.trunk_count[band]):
+        net = s.trunks[band, i]
+        if s.rows[net, 0] <= high and low <= s.rows[net, 1]:
+            n = _note(net // 2, found, seen, n)
+    return n
 
-    Of channel ``only``, or of all channels and tabs if that is -1.
+
+@part
+def _troubled(p: Problem, s: State, tracks: Floats, spot: Ints, found: Ints, seen: Ints) -> int:
+    """List the masses that broken rules are about: their trunks stand beside one without
+    a track, or they meet a row with one.
+
+    Around rows spot[1]..spot[2] of channel spot[0], or of all channels and tabs if that is -1.
     """
-    n = 0
+    n, only, bands = 0, spot[0], len(tracks) // s.row.shape[0]
+    first, last = (spot[1] - ASIDE, spot[2] + ASIDE) if only >= 0 else (0, s.row.shape[1] - 1)
     seen[:] = 0
-    bands = len(tracks) // s.row.shape[0]
     for band in range(len(tracks)):
-        if tracks[band] > 1e-6 and (only < 0 or band // bands == only):
-            for i in range(s.trunk_count[band]):
-                n = _note(s.trunks[band, i] // 2, found, seen, n)
-    for channel in range(s.row.shape[0]):
-        if only >= 0 and channel != only:
+        if tracks[band] <= 1e-6 or (only >= 0 and abs(band // bands - only) > 1):
             continue
-        for row in range(s.row.shape[1]):
+        track_cost(p, s, band)  # to know which of its trunks are late
+        for i in range(s.trunk_count[band]):
+            net = s.trunks[band, i]
+            if s.late[i] and s.rows[net, 0] <= last and first <= s.rows[net, 1]:
+                n = _beside(s, band, s.rows[net, 0] - BESIDE, s.rows[net, 1] + BESIDE, found, seen, n)
+    for channel in range(s.row.shape[0]):
+        if only >= 0 and abs(channel - only) > 1:
+            continue
+        for row in range(max(0, first), min(s.row.shape[1], last + 1)):
             t = s.row[channel, row]
             if row_cost(t, p.is_open[channel, row], int(p.sizes[2])) < 1e-6:
                 continue
+            size = -(-s.row.shape[1] // bands)
+            n = _beside(s, channel * bands + row // size, row - BESIDE, row + BESIDE, found, seen, n)
             for side in range(2):
-                for i in range(t[VIA_A + side]):
-                    n = _note(s.items[channel, row, side, i] // 4, found, seen, n)
                 column = channel - 1 + side
                 if 0 <= column < p.slot_at.shape[0] and p.slot_at[column, row] >= 0:
                     n = _note(s.mass_at[p.slot_at[column, row]], found, seen, n)
@@ -142,25 +171,36 @@ def _counted(p: Problem, s: State, nets: Ints) -> Floats:
     for band in range(len(known)):
         s.dirty[band] = 0
         known[band] = track_cost(p, s, band)
+    s.marked[0], s.marked[1] = len(known), 0
     return known
 
 
 @kernel
-def channel_costs(p: Problem, s: State) -> Floats:
-    """What the broken rules of every channel cost: of its trunks and its rows."""
+def trouble(p: Problem, s: State) -> Ints:
+    """(N, 3) channel, first and last row of all that breaks rules, by channel: trunks without a track, and rows."""
     nets = np.arange(max(len(s.mass), 4 * DEEP)).astype(np.int32)
     known = _counted(p, s, nets)
-    costs = np.zeros(s.row.shape[0])
-    for channel in range(len(costs)):
-        bands = len(known) // len(costs)
-        costs[channel] = np.sum(known[channel * bands : (channel + 1) * bands])
-        for row in range(s.row.shape[1]):
-            costs[channel] += row_cost(s.row[channel, row], p.is_open[channel, row], int(p.sizes[2]))
-    return costs
+    channels, rows = s.row.shape[0], s.row.shape[1]
+    spots, n = np.zeros((np.sum(s.trunk_count) + channels * rows, 3), np.int32), 0
+    for channel in range(channels):
+        bands = len(known) // channels
+        for band in range(channel * bands, (channel + 1) * bands):
+            if known[band] > 1e-6:
+                track_cost(p, s, band)
+                for i in range(s.trunk_count[band]):
+                    if s.late[i]:
+                        net = s.trunks[band, i]
+                        spots[n, 0], spots[n, 1], spots[n, 2] = channel, s.rows[net, 0], s.rows[net, 1]
+                        n += 1
+        for row in range(rows):
+            if row_cost(s.row[channel, row], p.is_open[channel, row], int(p.sizes[2])) > 1e-6:
+                spots[n, 0], spots[n, 1], spots[n, 2] = channel, row, row
+                n += 1
+    return spots[:n]
 
 
 @kernel
-def anneal(
+def anneal_at(
     p: Problem,
     s: State,
     random: npt.NDArray[np.uint64],
@@ -168,13 +208,13 @@ def anneal(
     hot: float,
     cold: float,
     fixed: bool,
-    focus: float = 0.0,
-    only: int = -1,
+    focus: float,
+    spot: Ints,
 ) -> float:
     """Anneal in place; ``fixed`` keeps the slots and changes sides only. Returns the cost of broken rules that is left.
 
-    A share ``focus`` of the moves is on masses that broken rules are about; of channel ``only``, if that is not -1, and
-    then it ends when that channel has none.
+    A share ``focus`` of the moves is on masses that broken rules are about; of rows spot[1]..spot[2] of channel
+    spot[0] alone, if that is not -1, and then it ends when nothing there breaks one.
 
     Ends as soon as no rule is broken, but not in the hot first half, so that wires shrink too.
 
@@ -189,8 +229,8 @@ def anneal(
     found, seen, troubled = everyone.copy(), np.zeros(masses, np.int32), 0
     for move in range(moves):
         if focus > 0 and move % REFRESH == 0:
-            troubled = _troubled(p, s, known, only, found, seen)
-            if only >= 0 and troubled == 0:
+            troubled = _troubled(p, s, known, spot, found, seen)
+            if spot[0] >= 0 and troubled == 0:
                 break
         if move % 1000 == 0 and 2 * move > moves and hard_cost(p, s, known, everyone) < 1e-6:
             break
@@ -245,25 +285,41 @@ def anneal(
             change += tally(p, s, nets, n, mass, other, PUT[0])
             if attempt == 0:
                 least = change
-                for channel in range(len(known)):
+                for channel in range(s.marked[0], s.marked[1]):
                     if s.dirty[channel]:
                         least -= known[channel]
                 # tracks cost nothing at best: most moves are thrown out before the packing
                 chance = draw(random) if least > 0 else 2.0
                 taken = least <= 0 or chance < math.exp(-least / heat)
                 if taken:
-                    for channel in range(len(known)):
+                    for channel in range(s.marked[0], s.marked[1]):
                         if s.dirty[channel]:
                             new[channel] = track_cost(p, s, channel)
                             change += new[channel] - known[channel]
                     if change > 0 and chance > 1:
                         chance = draw(random)
                     taken = change <= 0 or chance < math.exp(-change / heat)
-            for channel in range(len(known)):
+            for channel in range(s.marked[0], s.marked[1]):
                 if s.dirty[channel] and (attempt == 1 or taken):
                     s.dirty[channel] = 0
                     if taken:
                         known[channel] = new[channel]
             if taken:
                 break
+        s.marked[0], s.marked[1] = len(known), 0
     return hard_cost(p, s, known, everyone)
+
+
+def anneal(
+    problem: Problem,
+    state: State,
+    random: npt.NDArray[np.uint64],
+    moves: int,
+    hot: float,
+    cold: float,
+    fixed: bool,
+    focus: float = 0.0,
+    spot: Ints = EVERYWHERE,
+) -> float:
+    """``anneal_at`` everywhere, but for what ``focus`` and ``spot`` say."""
+    return float(anneal_at(problem, state, random, moves, hot, cold, fixed, focus, spot))

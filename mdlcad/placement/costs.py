@@ -153,7 +153,9 @@ def _half(p: Problem, s: State, mass: int, side: int, sign: int) -> float:
         s.rows[net, 0], s.rows[net, 1] = low, high
     bands = len(s.trunk_count) // s.row.shape[0]
     size = -(-s.row.shape[1] // bands)
-    for band in range(channel * bands + low // size, channel * bands + high // size + 1):
+    first, last = channel * bands + low // size, channel * bands + high // size
+    s.marked[0], s.marked[1] = min(s.marked[0], first), max(s.marked[1], last + 1)
+    for band in range(first, last + 1):
         _register(s.trunks[band], s.trunk_count, band, net, sign)
         s.dirty[band] = 1
     return cost

@@ -15,7 +15,7 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from mdlcad.placement.anneal import HOME_SIDE, anneal, channel_costs
+from mdlcad.placement.anneal import HOME_SIDE, anneal, trouble
 from mdlcad.placement.costs import BIAS_SIDE, SLOT
 from mdlcad.placement.lattice import Lattice
 from mdlcad.placement.levels import start_by_levels
@@ -30,15 +30,16 @@ SQUARES = 0.85
 COLD = 0.2
 ATTEMPTS, FAR_SEED = 3, 1_000_003
 """Starts to try, and how far their seeds are apart: not the next ones, which the caller may try."""
-BAND_MOVES, BAND_HOT, BAND_FOCUS = 300, 0.7, 0.5
+BAND_MOVES, BAND_HOT, BAND_FOCUS = 1000, 2.0, 0.5
 WHOLE_MOVES, WHOLE_HOT, WHOLE_FOCUS = 80, 0.7, 0.8
 """Moves a mass, first heat, and share of the moves that are on troubled masses."""
 HOLD = 3.0
 """What it costs at first to leave the columns and sides of the start, where no hub holds too much."""
 LIGHT = 0.3
 """What a trunk without a track weighs at first beside a hub that holds too much: it is mended more easily."""
-MEND_ROUNDS, MEND_MOVES, MEND_HEATS = 60, 10_000, (2.0, 1.0, 4.0)
-"""Rounds on the masses of one troubled channel alone, their moves, and their first heats, one after the other."""
+MEND_ROUNDS, MEND_EACH, MEND_MOVES, MEND_HEATS = 60, 10, 10_000, (2.0, 1.0, 4.0)
+"""Rounds on the masses of one troubled spot alone, and how many more for each spot that there is at first; their moves,
+and their first heats, one after the other."""
 
 
 def place_large(problem: Problem, lattice: Lattice, seed: int, moves_per_mass: int) -> tuple[State, float]:
@@ -81,22 +82,26 @@ def careful(
 
 
 def mend(problem: Problem, state: State, source: npt.NDArray[np.uint64], cost: float, fixed: bool) -> float:
-    """Anneal one troubled channel after the other, keeping what is no worse; ``fixed`` keeps the slots. The cost."""
-    last = -1
-    for turn in range(MEND_ROUNDS):
-        if cost < 1e-6:
+    """Anneal one troubled spot after the other, keeping what is no worse; ``fixed`` keeps the slots. The cost."""
+    spots = trouble(problem, state)
+    rounds, at = MEND_ROUNDS + MEND_EACH * len(spots), 0
+    for turn in range(rounds):
+        # what no spot is to blame for is tabs, or couplings that reach too far
+        if cost < 1e-6 or not len(spots):
             break
-        troubled = np.flatnonzero(channel_costs(problem, state) > 1e-6).tolist()
-        # what no channel is to blame for is tabs, or couplings that reach too far
-        last = next((channel for channel in troubled if channel > last), troubled[0] if troubled else -1)
         heat = MEND_HEATS[turn % len(MEND_HEATS)]
         before = [array.copy() for array in (state.mass, state.mass_at, state.side)]
-        after = float(anneal(problem, state, source, MEND_MOVES, heat, COLD, fixed, 1.0, last))
+        spot = spots[at % len(spots)]
+        after = anneal(problem, state, source, MEND_MOVES, heat, COLD, fixed, 1.0, spot)
+        at += 1
         if after > cost:
             for array, old in zip((state.mass, state.mass_at, state.side), before, strict=True):
                 array[:] = old
-        else:
+        elif after < cost:
             cost = after
+            here = tuple(spot.tolist())
+            spots = trouble(problem, state)
+            at = next((i for i, found in enumerate(spots.tolist()) if tuple(found) > here), 0)
     return cost
 
 

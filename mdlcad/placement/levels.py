@@ -21,15 +21,19 @@ from mdlcad.placement.crossings import settle_columns
 from mdlcad.placement.lattice import Lattice
 from mdlcad.placement.problem import Floats, Ints, Problem
 
-STRIP = 4
-"""Columns of a strip, about: a strip's levels must not be taller than the strip is wide by far."""
+STRIP, SQUAT = 4, 22
+"""Least columns of a strip, about, and most rows for each: where a strip turns, trunks are long."""
 SETTLE, SETTLE_HOT, SETTLE_COLD = 1000, 10.0, 0.5
 """Moves a mass of the annealing of columns, and its heats."""
 CELL, CROWDED = 12, 1.15
 """Rows of a cell; how much fuller than the average cell one may be."""
-MEND_ROUNDS, MEND, MEND_HOT, MEND_REACH = 30, 300, (6.0, 10.0), (2, 3, 4, 6, 8)
-"""Times that masses around hubs that hold too much are annealed again; moves a mass; first heats; how many couplings
-away they may be, one time after the other."""
+MEND_ROUNDS, MEND_EACH, MEND, MEND_HOT, MEND_REACH = 30, 5, 300, (6.0, 10.0), (2, 3, 4, 5, 6)
+"""Times that masses around a hub that holds too much are annealed again, and how many more for each such hub; moves a
+mass; first heats; how many couplings away they may be, one time after the other."""
+TOGETHER = 5
+"""The first so many times, all such hubs at once."""
+REST = 4
+"""Levels after which two share a column: where all move on, a mass has hardly any choice of columns."""
 _SWEEPS = 12
 
 
@@ -88,20 +92,22 @@ def _settle(
     all_masses = np.arange(masses, dtype=np.int32)
     settle(all_masses, False, SETTLE, SETTLE_HOT)
     cost = settle(all_masses, True, 0, SETTLE_HOT)
-    for turn in range(MEND_ROUNDS):
-        near = set(np.flatnonzero(hub >= HARD).tolist())
-        if not near:
+    wrong = np.flatnonzero(hub >= HARD).tolist()
+    for turn in range(MEND_ROUNDS + MEND_EACH * len(wrong)):
+        if not wrong:
             return
+        near = set(wrong if turn < TOGETHER else wrong[turn % len(wrong) :][:1])
         for _ in range(MEND_REACH[turn % len(MEND_REACH)]):
             near |= {other for mass in near for other in beside[mass]}
         held: tuple[Ints | Floats, ...] = (*chosen, hub)
         before = [array.copy() for array in held]
         after = settle(np.array(sorted(near), np.int32), True, MEND, MEND_HOT[turn % len(MEND_HOT)])
-        if after > cost:
+        left = np.flatnonzero(hub >= HARD).tolist()
+        if (len(left), after) > (len(wrong), cost):
             for array, old in zip(held, before, strict=True):
                 np.copyto(array, old)
         else:
-            cost = after
+            wrong, cost = left, after
 
 
 def _neighbours(problem: Problem, masses: int) -> list[list[int]]:
@@ -134,11 +140,11 @@ def _path(sizes: list[int], lattice: Lattice) -> list[tuple[int, bool]]:
     room[0] /= 2
     room[-1] /= 2
     share = sum(sizes) / np.sum(room)
-    strips = max(1, round(len(room) / STRIP))
+    strips = max(1, round(len(room) / max(STRIP, len(lattice.row_y) / SQUAT)))
     ends = [round(len(room) * i / strips) for i in range(strips + 1)]
     used = np.zeros(len(room))
     path: list[tuple[int, bool]] = []
-    at, strip, ahead = 0, 0, 1
+    at, strip, ahead, moved = 0, 0, 1, 0
     for rank, size in enumerate(sizes):
         low, high = ends[strip], ends[strip + 1] - 1
         if (
@@ -150,10 +156,12 @@ def _path(sizes: list[int], lattice: Lattice) -> list[tuple[int, bool]]:
             at += 1
             strip += int(at > high)
         elif rank:
-            near = [step for step in (ahead, 0, -ahead) if low <= at + step <= high]
+            steps = (ahead, 0, -ahead) if moved < REST else (0,)
+            near = [step for step in steps if low <= at + step <= high]
             step = min(near, key=lambda step: (used[at + step] + size / 2) / max(room[at + step], 0.5))
             at += step
             ahead = step or ahead
+            moved = moved + 1 if step else 0
         used[at] += size
         path.append((at, strip % 2 == 1))
     return path

@@ -26,9 +26,9 @@ class State(NamedTuple):
         trunks, trunk_count: the net-channels with a trunk, by band: band B c + b holds those that enter the b-th of
             B equal parts of the rows of channel c.
         window, rows: by net-channel, lowest and highest x (mm) and row of its trunk.
-        dirty: bands whose trunks have changed.
-        seat: by net-channel, its place in the band that is being packed. at, due, waits, last, alive, orders: room for
-            packing tracks; an order is (first, second, order before it with the same first or -1).
+        dirty: bands whose trunks have changed. marked: (2,) the first that may have, and one past the last.
+        seat: by net-channel, its place in the band that is being packed. late: by that place, whether the trunk found
+            no track. at, due, waits, last, alive, orders: room for packing tracks; an order is (first, second, order before it with the same first or -1).
         home: (max(M, J), 3) by mass the slot (or column, see ``COLUMN``) and bias side, by coupling the channel side
             that it should keep, or -1.
         careful: (1,) more than 0 if trunks are packed alike in whatever order they were registered, and rings broken
@@ -47,7 +47,9 @@ class State(NamedTuple):
     window: Floats
     rows: Ints
     dirty: Ints
+    marked: Ints
     seat: Ints
+    late: Ints
     at: Floats
     due: Floats
     waits: Ints
@@ -85,7 +87,9 @@ def start(problem: Problem, slot_of: Ints, seed: int, band: int | None = None) -
         window=np.zeros((2 * masses, 2)),
         rows=np.zeros((2 * masses, 2), np.int32),
         dirty=np.zeros(bands, np.int32),
+        marked=np.array([bands, 0], np.int32),
         seat=np.zeros(2 * masses, np.int32),
+        late=np.zeros(masses + 1, np.int32),
         at=np.zeros(masses + 1),
         due=np.zeros(masses + 1),
         waits=np.zeros(masses + 1, np.int32),

@@ -63,8 +63,9 @@ def track_cost(p: Problem, s: State, band: int) -> float:
     cost = 0.0
     for i in range(n):
         at[i], due[i] = s.window[nets[i], 0], s.window[nets[i], 1]
-        waits[i], s.last[i], s.seat[nets[i]] = 0, -1, i
+        waits[i], s.last[i], s.seat[nets[i]], s.late[i] = 0, -1, i, 0
         if due[i] < at[i] - 1e-6:
+            s.late[i] = 1
             cost += HARD * (1 + (at[i] - due[i]) / pitch)
             due[i] = at[i]
     low = band % bands * size
@@ -101,7 +102,10 @@ def track_cost(p: Problem, s: State, band: int) -> float:
                     continue
                 best, where = i, k
         late = at[best] - s.window[nets[best], 1]
+        if ring:
+            s.late[best] = 1
         if late > 1e-6 and s.window[nets[best], 0] <= s.window[nets[best], 1]:
+            s.late[best] = 1
             cost += HARD * (0.5 + late / pitch)
         left -= 1
         for k in range(where, left):

@@ -46,6 +46,8 @@ from tests.placement.tiles import tiled
 COPIES = (3, 4, 10, 20)
 CORES = 2
 """That channels are routed on; placing takes one."""
+PORT_ROWS = 5
+"""Rows from port to port, unless the wall is too short."""
 PEAK = 1.8
 """Largest |x|, as in the lock's own simulation."""
 
@@ -53,14 +55,15 @@ PEAK = 1.8
 def lattice_for(network: Network, rules: LayoutRules, fill: float) -> Lattice:
     """The smallest square in which ``network`` fills ``fill`` of the slots and channels are as wide as may be.
 
-    All ports stand on the left wall, equally far apart: only the first copy has any. Beside the outermost columns is
-    room for a coupler's trunk.
+    All ports stand on the left wall, from its lower end on: only the first copy has any. Beside the outermost columns
+    is room for a coupler's trunk.
     """
     bits = [bit.bit for bit in (*network.sensors, *network.actuators)]
-    ports = tuple(PortPlace(bit, "left", 0, 39 * (i + 0.5) / len(bits), (-1.0, 0.0)) for i, bit in enumerate(bits))
     need = math.ceil(len(network.masses) / fill)
     scale = math.sqrt(need * rules.column_most * rules.row_pitch) / 39
     while True:
+        apart = min(39 / len(bits), PORT_ROWS * rules.row_pitch / scale)
+        ports = tuple(PortPlace(bit, "left", 0, apart * (i + 0.5), (-1.0, 0.0)) for i, bit in enumerate(bits))
         for found in lattices(SQUARE, place_ports(network, ports, scale), rules, scale, need):
             one, two = found.column_x[:2]
             beside = one - found.inner.bounds[0] - rules.unit_left
