@@ -31,9 +31,9 @@ COLD = 0.2
 ATTEMPTS, FAR_SEED = 3, 1_000_003
 """Starts to try, and how far their seeds are apart: not the next ones, which the caller may try."""
 BAND_MOVES, BAND_HOT, BAND_FOCUS = 1000, 2.0, 0.5
-WHOLE_MOVES, WHOLE_HOT, WHOLE_FOCUS = 80, 0.7, 0.8
+WHOLE_MOVES, WHOLE_HOT, WHOLE_FOCUS = 200, 1.2, 0.5
 """Moves a mass, first heat, and share of the moves that are on troubled masses."""
-HOLD = 3.0
+HOLD = 1.0
 """What it costs at first to leave the columns and sides of the start, where no hub holds too much."""
 LIGHT = 0.3
 """What a trunk without a track weighs at first beside a hub that holds too much: it is mended more easily."""
