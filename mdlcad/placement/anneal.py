@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from mdlcad.compiled import inlined, kernel, part
 from mdlcad.placement.chance import draw
-from mdlcad.placement.costs import BIAS_SIDE, PUT, SLOT, TAKEN, VIA_A, WIRE, hard_cost, passes, row_cost, span, tally
+from mdlcad.placement.costs import BIAS_SIDE, PUT, SLOT, TAKEN, WIRE, hard_cost, passes, row_cost, span, tally
 from mdlcad.placement.problem import Floats, Ints, Problem
 from mdlcad.placement.state import COLUMN, DEEP, State
 from mdlcad.placement.tracks import track_cost

@@ -22,7 +22,8 @@ from mdlcad.placement.lattice import Lattice
 from mdlcad.placement.problem import Floats, Ints, Problem
 
 STRIP, SQUAT = 4, 22
-"""Least columns of a strip, about, and most rows for each: where a strip turns, trunks are long."""
+"""Least columns of a strip, about, and how many rows there are to each: where a narrow strip is tall, it turns often,
+and there trunks are long."""
 SETTLE, SETTLE_HOT, SETTLE_COLD = 1000, 10.0, 0.5
 """Moves a mass of the annealing of columns, and its heats."""
 CELL, CROWDED = 12, 1.15
@@ -33,7 +34,8 @@ mass; first heats; how many couplings away they may be, one time after the other
 TOGETHER = 5
 """The first so many times, all such hubs at once."""
 REST = 4
-"""Levels after which two share a column: where all move on, a mass has hardly any choice of columns."""
+"""About how many levels move on until two share a column: where all do, a mass has hardly any choice of columns. They
+do so where the strip has room, after at least half and at most twice as many."""
 _SWEEPS = 12
 
 
@@ -156,11 +158,12 @@ def _path(sizes: list[int], lattice: Lattice) -> list[tuple[int, bool]]:
             at += 1
             strip += int(at > high)
         elif rank:
-            steps = (ahead, 0, -ahead) if moved < REST else (0,)
-            near = [step for step in steps if low <= at + step <= high]
-            step = min(near, key=lambda step: (used[at + step] + size / 2) / max(room[at + step], 0.5))
-            at += step
+            onward = low <= at + ahead <= high
+            roomy = used[at] / max(room[at], 0.5) <= np.mean(used[low : high + 1]) / np.mean(room[low : high + 1])
+            due = moved >= 2 * REST or (moved >= REST / 2 and roomy) if onward else moved > 0 and roomy
+            step = 0 if due else ahead if onward else -ahead
             ahead = step or ahead
+            at = min(max(at + step, low), high)
             moved = moved + 1 if step else 0
         used[at] += size
         path.append((at, strip % 2 == 1))

@@ -28,7 +28,8 @@ class State(NamedTuple):
         window, rows: by net-channel, lowest and highest x (mm) and row of its trunk.
         dirty: bands whose trunks have changed. marked: (2,) the first that may have, and one past the last.
         seat: by net-channel, its place in the band that is being packed. late: by that place, whether the trunk found
-            no track. at, due, waits, last, alive, orders: room for packing tracks; an order is (first, second, order before it with the same first or -1).
+            no track. at, due, waits, last, alive, orders: room for packing tracks; an order is (first, second, order
+            before it with the same first or -1).
         home: (max(M, J), 3) by mass the slot (or column, see ``COLUMN``) and bias side, by coupling the channel side
             that it should keep, or -1.
         careful: (1,) more than 0 if trunks are packed alike in whatever order they were registered, and rings broken
