@@ -18,7 +18,8 @@ from mdlcad.mechanics.leaves import LeafKind, trim
 from mdlcad.mechanics.process import Plate, PlateRole, Process
 from mdlcad.mechanics.rules import LayoutRules
 from mdlcad.mechanics.sizing import Sizing, turn_stiffness
-from mdlcad.network.model import Network
+from mdlcad.network.model import Coupling, Network
+from mdlcad.parts.lean import Pull, lean_stiffnesses
 from mdlcad.placement.decks import Lean
 from mdlcad.placement.placement import PlacedMass, Placement
 from mdlcad.routing.layout import EndKind, Layout, Rung, Trunk
@@ -31,6 +32,8 @@ class CarrierStiffness:
     Attributes:
         stiffness: N/mm, of bars, hub pin, via pins and the source's shuttle turning in the plane; shuttle held in y.
         ratio: that over the coupler's own stiffness; the coupling is weakened by about 1 / (1 + ratio).
+        lean: N/mm, of a spring in a row with the carrier that takes as much of the coupling as the tilting of both
+            shuttles about x does, if no plate holds them (``lean.py``).
         tilt: angle about x by which all couplers of the net together tilt its shuttle, rad, with source and targets at
             opposite ends of the largest throws seen; the same for all couplers of a net.
     """
@@ -38,7 +41,19 @@ class CarrierStiffness:
     coupling: str
     stiffness: float
     ratio: float
+    lean: float
     tilt: float
+
+    @property
+    def leaning(self) -> float:
+        """N/mm, of the carrier in a row with its lean."""
+        return 1.0 / (1.0 / self.stiffness + 1.0 / self.lean)
+
+    @property
+    def leaned(self) -> float:
+        """Share of the coupling, in a row with its carrier, that the lean takes."""
+        row = self.stiffness / (1.0 + self.ratio)
+        return row / (row + self.lean)
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,7 +116,7 @@ def carrier_stiffnesses(
         if end.kind is EndKind.COUPLER
     }
     tilts = _tilts(network, hubs, ends, sizing, process)
-    found = []
+    found: list[tuple[Coupling, float, float]] = []
     built: dict[str, _Carrier] = {}
     for coupling in network.couplings:
         if coupling.name not in ends:
@@ -115,11 +130,24 @@ def carrier_stiffnesses(
         leaf = parts[coupling.name].leaf
         # a leaf whose ends do not turn pulls at its middle; of a rocker, only the half up to the post
         arm = leaf.reach / (4.0 if leaf.kind is LeafKind.ROCKER else 2.0)
-        stiffness = built[net].stiffness_at(x, rung, arm if rung.right.ref == coupling.name else -arm)
         found.append(
-            CarrierStiffness(coupling.name, trim(stiffness), trim(stiffness / leaf.own), trim(tilts[coupling.source]))
+            (coupling, built[net].stiffness_at(x, rung, arm if rung.right.ref == coupling.name else -arm), leaf.own)
         )
-    return tuple(found)
+    pulls = []
+    for coupling, stiffness, own in found:
+        low, high = (
+            _height(process, _unit_plate(process, hubs[mass]), ends[coupling.name][0].plate)
+            for mass in (coupling.source, coupling.target)
+        )
+        turning = 1.0 if parts[coupling.name].leaf.kind is LeafKind.ROCKER else -1.0
+        pulls.append(Pull(coupling.source, coupling.target, own * stiffness / (own + stiffness), low, high, turning))
+    sums = zip(found, lean_stiffnesses(pulls, sizing.law.shuttle_tilt), strict=True)
+    return tuple(
+        CarrierStiffness(
+            coupling.name, trim(stiffness), trim(stiffness / own), trim(lean), trim(tilts[coupling.source])
+        )
+        for (coupling, stiffness, own), lean in sums
+    )
 
 
 def _tilts(

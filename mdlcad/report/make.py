@@ -42,6 +42,7 @@ def mechanics_of(
             f"{item.subject}: {item.message}: {item.value:.4g}, limit {item.limit:.4g}" for item in sizing.findings
         ),
         compensation_left=None if compensation is None else _left(compensation),
+        lean_worst=max((item.leaned for item in carriers), default=None),
     )
 
 

@@ -44,6 +44,7 @@ class Mechanics:
         warnings: what the sizing found wanting, in words with numbers.
         compensation_left: largest |k| that a unit and its springs miss the network's k by at p = 0, 1 and 2, by the
             unit's law, preloads solved with the carriers as routed; None before there is a layout.
+        lean_worst: largest share of a coupling that its two shuttles take by tilting freely; None before a layout.
     """
 
     strain_worst: float
@@ -53,6 +54,7 @@ class Mechanics:
     compensation_difference_worst: float
     warnings: tuple[str, ...]
     compensation_left: tuple[float, float, float] | None = None
+    lean_worst: float | None = None
 
 
 class Origin(StrEnum):

@@ -175,6 +175,9 @@ def margin_rows(
         least = process.link.carrier_ratio
         about = "the softest carrier over the coupler that it drives"
         rows.append(Margin("carrier", f"{ratio:.1f} times", f"at least {least:g} times", about, ratio >= least))
+    if mechanics.lean_worst is not None:
+        about = "most of a coupling that its two shuttles take by tilting freely; the device as drawn is proved with it"
+        rows.append(Margin("lean", f"{100 * mechanics.lean_worst:.0f} %", "", about, None))
     about = (
         "largest change, in units of k, that the parts as built make to a unit's compensation; it is in the preloads"
     )

@@ -81,7 +81,8 @@ class MassBuilt:
 
 @dataclass(frozen=True, slots=True)
 class CouplerBuilt:
-    """A coupler or rocker of the device: its numbers, and the stiffness of its carrier, N/mm (0: it has none).
+    """A coupler or rocker of the device: its numbers, and the stiffness of its carrier with its shuttles' lean, N/mm
+    (0: it has no carrier).
 
     ``rub``: R of ``simulation.devices``, the friction of a rocker's eye on its post.
     """
@@ -141,7 +142,7 @@ class Built:
         missing = sorted(set(self._names) - set(drawn.units))
         if missing:
             raise SignoffError(f"the geometry has no units for {', '.join(missing)}")
-        self._stiff = {item.coupling: item.stiffness for item in carriers}
+        self._stiff = {item.coupling: trim(item.leaning) for item in carriers}
         try:
             self._units = self._unit_tables()
             self._couplers = self._coupler_tables()

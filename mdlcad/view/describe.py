@@ -128,6 +128,7 @@ class Catalogue:
         if coupling.name in self._carriers:
             found = self._carriers[coupling.name]
             yield "carrier", f"{found.ratio:.1f} times as stiff ({found.stiffness:.2f} N/mm)"
+            yield "lean", f"takes {100.0 * found.leaned:.0f} %"
 
     def _bias(self, body: Body) -> Card:
         name = _mass_of(body)
