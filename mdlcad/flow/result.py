@@ -32,6 +32,7 @@ def make_report(
         period=network.dynamics.period if network else None,
         behaviour=behaviour_of(state.proof),
         extracted=behaviour_of(state.extracted),
+        tilting=behaviour_of(state.tilting),
         lvs=Lvs(state.lvs.matched, state.lvs.differences) if state.lvs else None,
         drc=state.rules.counts if state.rules else None,
         mechanics=mechanics_of(state.sizing, state.carriers, state.compensation),

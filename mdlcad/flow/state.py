@@ -103,6 +103,7 @@ class State:
     pictures: tuple[str, ...] = ()
     lvs: LvsResult | None = None
     extracted: Proof | None = None
+    tilting: Proof | None = None
     built: BuiltDevice | None = None
     margins: Margins | None = None
 

@@ -190,11 +190,12 @@ STEPS: tuple[Step, ...] = (
     Step(
         "extraction",
         ("device", "network", "sizing", "placement", "carriers", "files"),
-        ("lvs", "extracted", "built"),
+        ("lvs", "extracted", "tilting", "built"),
         extract,
         lambda s: (
             f"layout {'matches' if need(s.lvs).matched else 'DIFFERS FROM'} the network; as built "
-            f"{need(s.extracted).transitions_checked} transitions, {need(s.extracted).mismatches} mismatches"
+            f"{need(s.extracted).transitions_checked} transitions, {need(s.extracted).mismatches} mismatches; "
+            f"shuttles tilting freely {need(s.tilting).mismatches}"
         ),
         lambda s: to_json([s.lvs, s.extracted]),
         restore_extraction,

@@ -29,6 +29,7 @@ from mdlcad.parts.store import Parts, bodies_of, records_of
 from mdlcad.placement.check_grid import check_grid
 from mdlcad.placement.placement import Placement
 from mdlcad.placement.unit_grid import GridPlacement
+from mdlcad.proof.outcome import Proof
 from mdlcad.proof.prove import prove
 from mdlcad.proof.reference import build_reference
 from mdlcad.report.guide import GUIDE, guide
@@ -36,7 +37,7 @@ from mdlcad.report.report import Report
 from mdlcad.routing.decks import process_of
 from mdlcad.routing.layout import Layout
 from mdlcad.signoff.drawn import measure_device
-from mdlcad.signoff.extraction import Built, BuiltDevice
+from mdlcad.signoff.extraction import TILTING, Built, BuiltDevice, Tilting
 from mdlcad.signoff.files import check_bodies
 from mdlcad.signoff.geometry import check_geometry
 from mdlcad.signoff.lvs import compare, recover
@@ -142,6 +143,9 @@ def _verify(folder: Path, report: Report, workers: int, say: Callable[[str], Non
         step(
             "extracted", ([] if extracted.holds else words) + ([] if kept else ["built.json: not what the files draw"])
         )
+        loose = Built(drawn, network, sizing, carriers, process, tilting=Tilting.FREE)
+        freely = prove(loose.network, reference, seed=report.seed, workers=workers, built=loose.system)
+        step("tilting", [] if freely == load(folder, TILTING, Proof) else [f"{TILTING}: not what the files draw"])
     step("page", _check_page(folder))
     return broken
 

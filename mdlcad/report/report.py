@@ -173,6 +173,7 @@ class Report:
     stages: tuple[StageRecord, ...]
     files: dict[str, str]
     # later than the first reports, which can still be read
+    tilting: Behaviour | None = None
     stopped: Stopped | None = None
     failures: tuple[str, ...] = ()
     bom: Bom | None = None

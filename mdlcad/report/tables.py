@@ -161,6 +161,11 @@ def margin_rows(
         for name, proof in proofs
     ]
     rows += _fabrication_rows(report.margins)
+    if report.tilting is not None:
+        found = report.tilting
+        about = "transitions right of those checked, as drawn, if no plate holds the shuttles from tilting"
+        right = f"{found.transitions_checked - found.mismatches} of {found.transitions_checked}"
+        rows.append(Margin("tilting freely", right, "", about, found.mismatches == 0))
     mechanics = report.mechanics
     if mechanics is None or process is None or sizing is None:
         return rows
@@ -176,7 +181,7 @@ def margin_rows(
         about = "the softest carrier over the coupler that it drives"
         rows.append(Margin("carrier", f"{ratio:.1f} times", f"at least {least:g} times", about, ratio >= least))
     if mechanics.lean_worst is not None:
-        about = "most of a coupling that its two shuttles take by tilting freely; the device as drawn is proved with it"
+        about = "most of a coupling that its two shuttles take by tilting freely, if no plate holds them"
         rows.append(Margin("lean", f"{100 * mechanics.lean_worst:.0f} %", "", about, None))
     about = (
         "largest change, in units of k, that the parts as built make to a unit's compensation; it is in the preloads"

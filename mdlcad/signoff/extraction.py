@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import astuple, dataclass, replace
+from enum import StrEnum
 
 import numpy as np
 from numpy.typing import NDArray
@@ -81,8 +82,7 @@ class MassBuilt:
 
 @dataclass(frozen=True, slots=True)
 class CouplerBuilt:
-    """A coupler or rocker of the device: its numbers, and the stiffness of its carrier with its shuttles' lean, N/mm
-    (0: it has no carrier).
+    """A coupler or rocker of the device: its numbers, and the stiffness of its carrier, N/mm (0: it has none).
 
     ``rub``: R of ``simulation.devices``, the friction of a rocker's eye on its post.
     """
@@ -107,6 +107,17 @@ class BuiltDevice:
     couplers: tuple[CouplerBuilt, ...]
 
 
+TILTING = "tilting.json"
+"""Artefact of the proof of a device whose shuttles tilt freely."""
+
+
+class Tilting(StrEnum):
+    """Whether plates hold shuttles from tilting about x, or nothing does; what they truly do is between the two."""
+
+    HELD = "held"
+    FREE = "free"
+
+
 class Built:
     """A device as drawn, and its like with errors.
 
@@ -124,6 +135,7 @@ class Built:
         carriers: Sequence[CarrierStiffness],
         process: Process,
         grid: Sequence[float] = (0.0,),
+        tilting: Tilting = Tilting.HELD,
     ) -> None:
         """Evaluate ``drawn``; ``grid``: errors of walls (mm) at which it is tabulated for ``devices``.
 
@@ -142,7 +154,8 @@ class Built:
         missing = sorted(set(self._names) - set(drawn.units))
         if missing:
             raise SignoffError(f"the geometry has no units for {', '.join(missing)}")
-        self._stiff = {item.coupling: trim(item.leaning) for item in carriers}
+        free = tilting is Tilting.FREE
+        self._stiff = {item.coupling: trim(item.leaning) if free else item.stiffness for item in carriers}
         try:
             self._units = self._unit_tables()
             self._couplers = self._coupler_tables()
