@@ -11,7 +11,7 @@ from mdlcad.compiled import inlined, kernel, part
 from mdlcad.placement.chance import draw
 from mdlcad.placement.costs import BIAS_SIDE, PUT, SLOT, TAKEN, WIRE, hard_cost, passes, row_cost, span, tally
 from mdlcad.placement.problem import Floats, Ints, Problem
-from mdlcad.placement.state import COLUMN, DEEP, State
+from mdlcad.placement.state import COLUMN, State
 from mdlcad.placement.tracks import track_cost
 
 HOME_SIDE = 2
@@ -178,7 +178,7 @@ def _counted(p: Problem, s: State, nets: Ints) -> Floats:
 @kernel
 def trouble(p: Problem, s: State) -> Ints:
     """(N, 3) channel, first and last row of all that breaks rules, by channel: trunks without a track, and rows."""
-    nets = np.arange(max(len(s.mass), 4 * DEEP)).astype(np.int32)
+    nets = np.arange(len(s.mass)).astype(np.int32)
     known = _counted(p, s, nets)
     channels, rows = s.row.shape[0], s.row.shape[1]
     spots, n = np.zeros((np.sum(s.trunk_count) + channels * rows, 3), np.int32), 0
@@ -222,7 +222,7 @@ def anneal_at(
     stationary distribution and spares the tallies most of the hopeless moves.
     """
     masses, couplings = len(s.mass), len(p.coupling)
-    nets = np.arange(max(masses, 4 * DEEP)).astype(np.int32)
+    nets = np.arange(masses).astype(np.int32)
     known = _counted(p, s, nets)
     new = known.copy()
     everyone = np.arange(masses).astype(np.int32)

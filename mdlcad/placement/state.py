@@ -10,8 +10,6 @@ import numpy.typing as npt
 from mdlcad.placement.chance import random_source
 from mdlcad.placement.problem import Floats, Ints, Problem
 
-DEEP = 16
-"""Most items that can meet one side of a row of a channel."""
 COLUMN = -2
 """A home of ``COLUMN - c`` is any slot of column c."""
 
@@ -22,7 +20,8 @@ class State(NamedTuple):
     Attributes:
         mass: (M, 2) slot, side of the bias leaf. mass_at: mass or -1 by slot. side: (J,) channel side of couplings.
         row: (C, R, 9) tallies of a row of a channel.
-        items: (C, R, 2, DEEP) what meets a row on either side: 2 * net-channel + whether it has a post.
+        items: (C, R, 2, deep) what meets a row on either side: 2 * net-channel + whether it has a post; ``_deep`` is
+            the most that can.
         trunks, trunk_count: the net-channels with a trunk, by band: band B c + b holds those that enter the b-th of
             B equal parts of the rows of channel c.
         window, rows: by net-channel, lowest and highest x (mm) and row of its trunk.
@@ -66,13 +65,9 @@ def start(problem: Problem, slot_of: Ints, seed: int, band: int | None = None) -
     """A state with the given slots, and a seeded random source.
 
     Trunks are packed in bands of at most ``band`` rows; None packs whole channels.
-
-    Raises:
-        ValueError: a mass has more inputs than a row of a channel can hold.
     """
     masses, channels, rows = len(slot_of), problem.limits.shape[0], problem.limits.shape[1]
-    if masses and int(np.max(np.diff(problem.mass[:, 1]))) + 6 > DEEP:
-        raise ValueError("a mass has too many inputs for the placer")
+    deep = _deep(problem)
     together = max(1, rows if band is None else min(rows, band))
     bands = channels * max(1, -(-rows // together))
     mass_at = np.full(len(problem.slot), -1, np.int32)
@@ -82,7 +77,7 @@ def start(problem: Problem, slot_of: Ints, seed: int, band: int | None = None) -
         mass_at=mass_at,
         side=np.zeros(len(problem.coupling), np.int32),
         row=np.zeros((channels, rows, 9), np.int32),
-        items=np.zeros((channels, rows, 2, DEEP), np.int32),
+        items=np.zeros((channels, rows, 2, deep), np.int32),
         trunks=np.zeros((bands, masses + 1), np.int32),
         trunk_count=np.zeros(bands, np.int32),
         window=np.zeros((2 * masses, 2)),
@@ -96,9 +91,22 @@ def start(problem: Problem, slot_of: Ints, seed: int, band: int | None = None) -
         waits=np.zeros(masses + 1, np.int32),
         last=np.zeros(masses + 1, np.int32),
         alive=np.zeros(masses + 1, np.int32),
-        orders=np.zeros((min(rows, together) * 3 * DEEP * DEEP, 3), np.int32),
+        orders=np.zeros((min(rows, together) * 3 * deep * deep, 3), np.int32),
         home=np.full((max(masses, len(problem.coupling)), 3), -1, np.int32),
         careful=np.zeros(1),
         price=np.zeros(2),
     )
     return state, random_source(seed)
+
+
+def _deep(problem: Problem) -> int:
+    """Most items that can ever meet one side of a row of a channel; the kernels write without looking.
+
+    A hub there brings a rung of its own net and its inputs; and every tab that leaves in that row may pass, as the
+    masses of all may stand in one column.
+    """
+    inputs = int(np.max(np.diff(problem.mass[:, 1]), initial=0))
+    met = np.zeros(problem.limits.shape[1], np.int32)
+    for low, high in problem.tab[:, :2].tolist():
+        met[low : high + 1] += 1
+    return 1 + inputs + int(np.max(met, initial=0))

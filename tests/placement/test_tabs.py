@@ -1,12 +1,20 @@
 """How ports are reached: in corners, on slopes, over hub columns."""
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 from shapely import Polygon
 
+from mdlcad.network.model import PortBit
+from mdlcad.placement.anneal import anneal
+from mdlcad.placement.costs import VIA_A, VIA_B
 from mdlcad.placement.grid import free_intervals, inside, way
 from mdlcad.placement.lattice import lattices, place_ports
 from mdlcad.placement.ports import PortPlace
-from tests.placement.networks import HOUSE, LOCK_PORTS, SQUARE, lock, pom_rules, small
+from mdlcad.placement.problem import build
+from mdlcad.placement.state import start
+from tests.placement.networks import HOUSE, LOCK_PORTS, SQUARE, lock, maze, pom_rules, small
 
 
 def test_a_notch_splits_a_strip_in_two():
@@ -41,3 +49,23 @@ def test_a_roof_port_leaves_through_the_slope():
     tab = next(tab for tab in lattice.tabs if tab.bit == "S1[0]")
     assert tab.vertical and tab.x == pytest.approx(60.0, abs=0.03)
     assert tab.y < 42.0 * 6.0 < tab.path[-1][1]
+
+
+def test_as_many_tabs_may_meet_in_one_row_as_there_are_ports():
+    """Kernels write what meets a row without looking, so there must be room for whatever a move can bring together."""
+    masses, scale = maze().masses[:24], 10.0
+    bits = tuple(PortBit(f"A[{i}]", mass.name) for i, mass in enumerate(masses))
+    network = replace(maze(), masses=masses, couplings=(), sensors=(), actuators=bits, tick=None)
+    rules = pom_rules(network)
+    ports = tuple(PortPlace(bit.bit, "bottom", 1.5 * i + 2, 0, (0.0, -1.0)) for i, bit in enumerate(bits))
+    grid = lattices(SQUARE, place_ports(network, ports, scale), rules, scale, len(masses))[0]
+    problem = build(network, grid, rules)
+    column = [slot for slot, (at, _) in enumerate(grid.slots) if at == 0][: len(masses)]
+    assert len(column) == len(masses)
+    state, random = start(problem, np.array(column, np.int32), 1)
+    anneal(problem, state, random, 0, 1.0, 1.0, False)
+    # tabs farther right hang on the hub to the right, beside whatever is bent in the channel itself
+    left, right = int(state.row[1, 0, VIA_A]), int(state.row[1, 0, VIA_B])
+    assert right > 16 > left
+    nets = state.items[1, 0, 1, :right] // 2
+    assert len(nets) == len(set(nets.tolist())) == right
