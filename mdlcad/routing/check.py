@@ -17,10 +17,12 @@ listed by rule:
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from shapely import Polygon, box
+import numpy as np
+from shapely import Polygon, STRtree, box
 
 from mdlcad.mechanics.rules import LayoutRules
 from mdlcad.network.model import Network
@@ -83,10 +85,10 @@ Raw = tuple[str, str, float, float, tuple[str, ...]]
 
 def _check_units(network: Network, placement: Placement, rules: LayoutRules) -> list[Raw]:
     found: list[Raw] = []
-    names = [unit.mass for unit in placement.masses]
+    times = Counter(unit.mass for unit in placement.masses)
     for mass in sorted(m.name for m in network.masses):
-        if names.count(mass) != 1:
-            found.append(("unit_slot", f"mass {mass} is placed {names.count(mass)} times", 0.0, 0.0, (mass,)))
+        if times[mass] != 1:
+            found.append(("unit_slot", f"mass {mass} is placed {times[mass]} times", 0.0, 0.0, (mass,)))
     usable = Polygon(placement.boundary).buffer(-(rules.frame_width + rules.gap) + 1e-6, join_style="mitre")
     boxes = []
     for unit in placement.masses:
@@ -103,12 +105,12 @@ def _check_units(network: Network, placement: Placement, rules: LayoutRules) -> 
         if not usable.contains(shape):
             found.append(("unit_slot", f"unit {unit.mass} reaches into the rim", unit.x, unit.y, (unit.mass,)))
         boxes.append(shape)
-    for i, a in enumerate(boxes):
-        for j in range(i):
-            if a.intersection(boxes[j]).area > 1e-6:
-                pair = (placement.masses[j].mass, placement.masses[i].mass)
-                where = placement.masses[i]
-                found.append(("unit_slot", f"units {pair[0]} and {pair[1]} overlap", where.x, where.y, pair))
+    near, other = STRtree(boxes).query(np.array(boxes, object), predicate="intersects")
+    for i, j in sorted(zip(near.tolist(), other.tolist(), strict=True)):
+        if j < i and boxes[i].intersection(boxes[j]).area > 1e-6:
+            pair = (placement.masses[j].mass, placement.masses[i].mass)
+            where = placement.masses[i]
+            found.append(("unit_slot", f"units {pair[0]} and {pair[1]} overlap", where.x, where.y, pair))
     return found
 
 

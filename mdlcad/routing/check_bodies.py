@@ -132,6 +132,10 @@ class _Maker:
 
     def leaves(self, layout: Layout) -> None:
         half = self.rules.hub_height / 2
+        driving: dict[str, list[Rung]] = {}
+        for rung in layout.rungs:
+            for ref in sorted({rung.left.ref, rung.right.ref}):
+                driving.setdefault(ref, []).append(rung)
         for leaf in layout.couplers:
             coupling = self.couplings.get(leaf.coupling)
             if coupling is None:
@@ -143,8 +147,8 @@ class _Maker:
             tied = [_block(coupling.target, leaf.side.value, leaf.plate)]
             tied += [
                 f"rung {rung.name}"
-                for rung in layout.rungs
-                if rung.net == coupling.source and leaf.coupling in (rung.left.ref, rung.right.ref)
+                for rung in driving.get(leaf.coupling, ())
+                if rung.net == coupling.source
             ]
             name = f"coupler {leaf.coupling}"
             swept = _sweep(shape, self.rules.throw)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
 from shapely import STRtree
 
 from mdlcad.mechanics.rules import LayoutRules
@@ -32,7 +31,7 @@ def check_motion(solids: Sequence[Solid], rules: LayoutRules) -> list[Raw]:
 def _pair(a: Solid, b: Solid, rules: LayoutRules) -> Raw | None:
     if a.name in b.tied or b.name in a.tied:
         return None
-    together = bool(np.isin(a.masses, b.masses).any()) if a.masses and b.masses else False
+    together = not set(a.masses).isdisjoint(b.masses)
     first, second = sorted((a.name, b.name))
     x, y = (a.shape.centroid.x + b.shape.centroid.x) / 2, (a.shape.centroid.y + b.shape.centroid.y) / 2
     if together and not (a.flexible or b.flexible):

@@ -38,7 +38,13 @@ def _carriers(network: Network, placement: Placement, layout: Layout, hubs: dict
         trunks[trunk.name] = trunk
     needing = {c.source for c in network.couplings}
     needing |= {port.mass for port in placement.ports}
-    for net in sorted({*(r.net for r in layout.rungs), *(t.net for t in layout.trunks), *needing}):
+    rungs_of: dict[str, list[Rung]] = {}
+    for rung in layout.rungs:
+        rungs_of.setdefault(rung.net, []).append(rung)
+    trunks_of: dict[str, list[Trunk]] = {}
+    for trunk in layout.trunks:
+        trunks_of.setdefault(trunk.net, []).append(trunk)
+    for net in sorted({*rungs_of, *trunks_of, *needing}):
         if net not in hubs:
             yield "carrier", f"net {net} has no mass", 0.0, 0.0, (net,)
             continue
@@ -51,8 +57,7 @@ def _carriers(network: Network, placement: Placement, layout: Layout, hubs: dict
             return node
 
         members = {"hub"}
-        rungs = [rung for rung in layout.rungs if rung.net == net]
-        for rung in rungs:
+        for rung in rungs_of.get(net, ()):
             members.add(f"rung {rung.name}")
             if rung.left.x >= rung.right.x:
                 yield "carrier", f"rung {rung.name} has no length", rung.left.x, rung.y, (rung.name,)
@@ -75,7 +80,7 @@ def _carriers(network: Network, placement: Placement, layout: Layout, hubs: dict
                         yield "carrier", words, end.x, rung.y, (rung.name, end.ref)
                     else:
                         joined[find(f"rung {rung.name}")] = find(f"trunk {end.ref}")
-        members |= {f"trunk {trunk.name}" for trunk in layout.trunks if trunk.net == net}
+        members |= {f"trunk {trunk.name}" for trunk in trunks_of.get(net, ())}
         parts = {find(member) for member in members}
         if len(parts) > 1 or (net in needing and len(members) == 1):
             loose = sorted(member for member in members if find(member) != find("hub"))
@@ -97,8 +102,9 @@ def _couplers(network: Network, layout: Layout, hubs: dict[str, PlacedMass], rul
     for name in sorted({*leaves, *excused} - set(known)):
         yield "coupler", f"the network has no coupling {name}", 0.0, 0.0, (name,)
     ends = [(rung, end) for rung in layout.rungs for end in _ends(rung) if end.kind is EndKind.COUPLER]
-    count = Counter(end.ref for _, end in ends)
+    ends_at: dict[str, list[tuple[Rung, RungEnd]]] = {}
     for rung, end in ends:
+        ends_at.setdefault(end.ref, []).append((rung, end))
         if end.ref not in known or known[end.ref].source != rung.net:
             words = f"rung {rung.name} of net {rung.net} drives {end.ref}, which is not its own"
             yield "coupler", words, end.x, rung.y, (rung.name, end.ref)
@@ -121,14 +127,13 @@ def _couplers(network: Network, layout: Layout, hubs: dict[str, PlacedMass], rul
             yield "coupler", f"coupler {leaf.coupling} is on {leaf.plate}, which is no rung plate", *here
         held = [
             (rung, end)
-            for rung, end in ends
-            if end.ref == leaf.coupling
-            and rung.plate == leaf.plate
+            for rung, end in ends_at.get(leaf.coupling, ())
+            if rung.plate == leaf.plate
             and abs(rung.y - leaf.y) < NEAR
             and abs(end.x - leaf.start_x) < NEAR
             and (end is rung.left) == (leaf.side is Side.RIGHT)
         ]
-        if len(held) != 1 or count[leaf.coupling] != 1:
+        if len(held) != 1 or len(ends_at[leaf.coupling]) != 1:
             yield "coupler", f"coupler {leaf.coupling} is not held by exactly one rung of {coupling.source}", *here
 
 
@@ -164,6 +169,11 @@ def _tabs(placement: Placement, layout: Layout, rules: LayoutRules) -> Iterable[
         if count[bit] != want:
             x, y = (ports[bit].x, ports[bit].y) if bit in ports else (0.0, 0.0)
             yield "tab", f"port {bit} has {count[bit]} tabs, {want} wanted", x, y, (bit,)
+    ends_at: dict[str, list[tuple[Rung, RungEnd]]] = {}
+    for rung in layout.rungs:
+        for end in _ends(rung):
+            if end.kind is EndKind.TAB:
+                ends_at.setdefault(end.ref, []).append((rung, end))
     for tab in layout.tabs:
         if tab.bit not in ports:
             continue
@@ -181,9 +191,8 @@ def _tabs(placement: Placement, layout: Layout, rules: LayoutRules) -> Iterable[
             yield "tab", f"tab of {tab.bit} is not made of axis-parallel pieces", *here
         held = [
             rung
-            for rung in layout.rungs
-            for end in _ends(rung)
-            if end.kind is EndKind.TAB and end.ref == tab.bit and rung.net == tab.net and rung.plate == tab.plate
+            for rung, end in ends_at.get(tab.bit, ())
+            if rung.net == tab.net and rung.plate == tab.plate
             and abs(end.x - tab.path[0][0]) < NEAR and abs(rung.y - tab.path[0][1]) < NEAR
         ]  # fmt: skip
         if len(held) != 1:
