@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-from shapely import LineString, Point, Polygon, box, union_all
+import numpy as np
+from shapely import LineString, MultiPoint, Point, Polygon, box, get_coordinates, union_all
 from shapely.affinity import translate
 
 from mdlcad.mechanics.rules import LayoutRules
@@ -145,11 +146,7 @@ class _Maker:
             x = sorted((hub.x + sign * self.rules.hub_half, leaf.start_x))
             shape = box(x[0], leaf.y - half, x[1], leaf.y + half)
             tied = [_block(coupling.target, leaf.side.value, leaf.plate)]
-            tied += [
-                f"rung {rung.name}"
-                for rung in driving.get(leaf.coupling, ())
-                if rung.net == coupling.source
-            ]
+            tied += [f"rung {rung.name}" for rung in driving.get(leaf.coupling, ()) if rung.net == coupling.source]
             name = f"coupler {leaf.coupling}"
             swept = _sweep(shape, self.rules.throw)
             masses = (coupling.source, coupling.target)
@@ -188,9 +185,10 @@ def _block(mass: str, side: str, plate: str) -> str:
 
 def _sweep(shape: Polygon, throw: float) -> Polygon:
     """Where a body goes that moves by up to ``throw`` up and down (all shapes here are convex or axis-parallel)."""
-    steps: Sequence[float] = (-throw, 0.0, throw)
     if shape.convex_hull.equals(shape):
-        return union_all([translate(shape, 0.0, step) for step in steps]).convex_hull
+        corners, away = get_coordinates(shape), np.array((0.0, throw))
+        return MultiPoint(np.concatenate([corners - away, corners + away])).convex_hull
+    steps: Sequence[float] = (-throw, 0.0, throw)
     # a bent tab: sweep each of its convex edges' boxes
     coordinates = list(shape.exterior.coords)
     pieces = [translate(shape, 0.0, step) for step in steps]
