@@ -14,10 +14,14 @@ _INK = "#1c2127"
 _PAPER = (255, 255, 255, 226)
 _FAINT = "#5b636e"
 _MARKED = "#b30f5f"
+_MOST_COVERED = 0.25
+"""Share of a picture that its keys may cover."""
 
 
 def captioned(image: Colours, title: str, keys: Sequence[Key], card: Card | None = None, panel: int = 0) -> Image.Image:
     """``image`` (uint8[h, w, 3]) with a title at the top, ``keys`` at the lower left and ``card`` beside it.
+
+    Of a picture so small that the keys would cover more than a quarter of it, they are left out.
 
     Args:
         panel: width of the panel that is put on the right for the card, pixels.
@@ -32,8 +36,8 @@ def captioned(image: Colours, title: str, keys: Sequence[Key], card: Card | None
     for number, row in enumerate(_wrapped(draw, title, font, picture.width - 2 * pad)):
         draw.text((pad, pad + number * line), row, fill=_INK, font=font)
     bottom = picture.height - pad
-    if keys:
-        width = max(draw.textlength(key.words, font) for key in keys) + 2.6 * size
+    width = max((draw.textlength(key.words, font) for key in keys), default=0.0) + 2.6 * size
+    if keys and width * line * len(keys) <= _MOST_COVERED * edge * height:
         top = bottom - line * len(keys)
         draw.rectangle((pad * 0.5, top - pad * 0.5, pad * 1.5 + width, bottom + pad * 0.5), fill=_PAPER)
         for number, key in enumerate(keys):

@@ -13,7 +13,8 @@ import mdlcad.view.animate
 from mdlcad.cli import HOLDS, UNUSABLE, main
 from mdlcad.view.animate import animate
 from mdlcad.view.camera import VIEW_ANGLE, Preset, pose
-from mdlcad.view.colours import ColourBy
+from mdlcad.view.caption import captioned
+from mdlcad.view.colours import ColourBy, Key
 from mdlcad.view.scene import Look, Scene
 from mdlcad.view.stage import hidden_stage
 from mdlcad.view.still import still
@@ -140,3 +141,12 @@ def test_the_command_writes_what_was_asked_for(voter: Path, tmp_path: Path, caps
     assert Image.open(path).size == (200, 150)
     assert "written" in capsys.readouterr().out
     assert list(tmp_path.iterdir()) == [path]
+
+
+def test_keys_stand_where_they_leave_the_picture_to_be_seen() -> None:
+    keys = [Key("#2b6cd4", f"what number {number} stands for") for number in range(9)]
+    small, large = (
+        np.asarray(captioned(np.full((*shape, 3), 255, np.uint8), "", keys)) for shape in ((240, 320), (720, 960))
+    )
+    assert (small == 255).all()
+    assert (large == (0x2B, 0x6C, 0xD4)).all(axis=2).sum() > 9 * 100
