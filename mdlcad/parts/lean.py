@@ -15,8 +15,8 @@ import numpy as np
 from scipy.sparse import csc_matrix, diags
 from scipy.sparse.linalg import splu
 
-_RIGID = 1e9
-"""N/mm of a lean that is none."""
+from mdlcad.mechanics.preload import RIGID_CARRIER
+
 _LEAST = 1e-3
 """Share of a coupling that is left at the least, so that a hopeless one is a number still."""
 
@@ -71,5 +71,5 @@ def lean_stiffnesses(pulls: Sequence[Pull], tilt: float) -> tuple[float, ...]:
             force[mine] = turning[mine] * felt[targets[mine]]
     # where others take more than it has, next to nothing is left of a coupling; where they add to it, it has no lean
     left = np.maximum(force, _LEAST * stiffness)
-    lost = np.maximum(1.0 / left - 1.0 / stiffness, 1.0 / _RIGID)
+    lost = np.maximum(1.0 / left - 1.0 / stiffness, 1.0 / RIGID_CARRIER)
     return tuple(float(value) for value in 1.0 / lost)

@@ -30,6 +30,16 @@ def _ends(rung: Rung) -> tuple[RungEnd, RungEnd]:
     return rung.left, rung.right
 
 
+def _ends_at(layout: Layout, kind: EndKind) -> dict[str, list[tuple[Rung, RungEnd]]]:
+    """All ends of one kind, by what they are at."""
+    found: dict[str, list[tuple[Rung, RungEnd]]] = {}
+    for rung in layout.rungs:
+        for end in _ends(rung):
+            if end.kind is kind:
+                found.setdefault(end.ref, []).append((rung, end))
+    return found
+
+
 def _carriers(network: Network, placement: Placement, layout: Layout, hubs: dict[str, PlacedMass]) -> Iterable[Raw]:
     trunks: dict[str, Trunk] = {}
     for trunk in layout.trunks:
@@ -102,9 +112,8 @@ def _couplers(network: Network, layout: Layout, hubs: dict[str, PlacedMass], rul
     for name in sorted({*leaves, *excused} - set(known)):
         yield "coupler", f"the network has no coupling {name}", 0.0, 0.0, (name,)
     ends = [(rung, end) for rung in layout.rungs for end in _ends(rung) if end.kind is EndKind.COUPLER]
-    ends_at: dict[str, list[tuple[Rung, RungEnd]]] = {}
+    ends_at = _ends_at(layout, EndKind.COUPLER)
     for rung, end in ends:
-        ends_at.setdefault(end.ref, []).append((rung, end))
         if end.ref not in known or known[end.ref].source != rung.net:
             words = f"rung {rung.name} of net {rung.net} drives {end.ref}, which is not its own"
             yield "coupler", words, end.x, rung.y, (rung.name, end.ref)
@@ -169,11 +178,7 @@ def _tabs(placement: Placement, layout: Layout, rules: LayoutRules) -> Iterable[
         if count[bit] != want:
             x, y = (ports[bit].x, ports[bit].y) if bit in ports else (0.0, 0.0)
             yield "tab", f"port {bit} has {count[bit]} tabs, {want} wanted", x, y, (bit,)
-    ends_at: dict[str, list[tuple[Rung, RungEnd]]] = {}
-    for rung in layout.rungs:
-        for end in _ends(rung):
-            if end.kind is EndKind.TAB:
-                ends_at.setdefault(end.ref, []).append((rung, end))
+    ends_at = _ends_at(layout, EndKind.TAB)
     for tab in layout.tabs:
         if tab.bit not in ports:
             continue

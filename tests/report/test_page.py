@@ -2,16 +2,19 @@
 
 import json
 import re
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
 import pytest
 from lxml import html
 
+from mdlcad.artefact import load
 from mdlcad.errors import UsageError
 from mdlcad.flow.schemas import schema
-from mdlcad.report.page import page, write_page
-from mdlcad.report.report import Stopped
+from mdlcad.report.page import page, verdict_of, write_page
+from mdlcad.report.report import Report, Stopped
+from mdlcad.report.tables import margin_rows
 from tests.report.folders import BROKEN, folder, proof
 from tests.report.schema_check import problems
 
@@ -161,3 +164,15 @@ def test_a_report_of_another_shape_is_refused_by_the_schema(whole, key, value):
     report = json.loads((whole / "report.json").read_text())
     report[key] = value
     assert problems(report, rules, rules)
+
+
+def test_a_device_that_only_plates_keep_right_says_so(tmp_path):
+    made = load(folder(tmp_path / "build"), "report.json", Report)
+    assert made.extracted is not None
+    wrong = replace(made, tilting=replace(made.extracted, mismatches=1))
+    words = "works only as far as plates hold its shuttles"
+    assert words in " ".join(verdict_of(wrong).more)
+    assert words not in " ".join(verdict_of(replace(made, tilting=made.extracted)).more)
+    for report, holds in ((wrong, False), (replace(made, tilting=made.extracted), True)):
+        (row,) = (row for row in margin_rows(report, None, None, ()) if row.name == "tilting freely")
+        assert row.holds is holds

@@ -16,7 +16,7 @@ from mdlcad.mechanics.leaves import LargeLeaf, LeafKind, chain_of, rung_sheet
 from mdlcad.parts.body import Body
 from mdlcad.parts.stiffness import carrier_stiffnesses
 from mdlcad.signoff.drawn import Drawn, measure_device
-from mdlcad.signoff.extraction import Built
+from mdlcad.signoff.extraction import Built, Tilting
 from mdlcad.signoff.lvs import compare, recover
 from mdlcad.signoff.measure import chain_of_leaf, measure_leaf, measure_unit, spans_at_x
 from mdlcad.signoff.numbers import bias_numbers
@@ -118,6 +118,16 @@ def test_preloads_that_know_the_carriers_leave_nothing_in_the_middle(device: Dev
         assert (mass.k0 - nominal.k0, mass.k0 + 2 * mass.k1 - nominal.k0 - 2 * nominal.k1) == pytest.approx(
             (left[0], left[2]), abs=0.01
         )
+
+
+def test_shuttles_that_tilt_freely_take_their_lean_from_every_coupling(device: Device, built: Built) -> None:
+    carriers = carrier_stiffnesses(device.network, device.placement, device.layout, device.sizing, device.process)
+    loose = Built(drawn_of(built), device.network, device.sizing, carriers, device.process, tilting=Tilting.FREE)
+    left = {item.coupling: 1.0 - item.leaned for item in carriers}
+    held = {item.name: item.strength for item in built.network.couplings}
+    assert min(left.values()) < 0.97
+    for item in loose.network.couplings:
+        assert item.strength / held[item.name] == pytest.approx(left[item.name], abs=0.01)
 
 
 def test_the_quartic_is_kept(device: Device, built: Built) -> None:
