@@ -14,8 +14,7 @@ Commands = argparse._SubParsersAction  # the only name argparse gives what add_s
 
 def seed(text: str) -> int:
     """A seed."""
-    value = int(text)
-    if not 0 <= value < 2**31:
+    if not text.isdecimal() or not 0 <= (value := int(text)) < 2**31:
         raise argparse.ArgumentTypeError("a seed is a whole number from 0 to 2147483647")
     return value
 

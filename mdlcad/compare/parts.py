@@ -173,10 +173,11 @@ def _carriers(pair: Pair) -> list[Change]:
 
 def _sizes(pair: Pair) -> list[Change]:
     a, b = pair.both("sizing.json", Sizing)
+    changes: list[Change] = []
     if pair.a.has(COMPENSATION_FILE) and pair.b.has(COMPENSATION_FILE):
         solved = pair.both(COMPENSATION_FILE, Compensation)
         a, b = compensated(a, solved[0]), compensated(b, solved[1])
-    changes = []
+        changes += _compensations(pair, *solved)
     for what, sized_a, sized_b in (
         ("size of unit", {pair.mass(u.mass): u for u in a.units}, {u.mass: u for u in b.units}),
         (
@@ -196,6 +197,20 @@ def _sizes(pair: Pair) -> list[Change]:
             words = worded(fields) if change.sort is Sort.CHANGED else change.words
             kept.append(replace(change, fields=fields, words=words))
     return kept
+
+
+def _compensations(pair: Pair, a: Compensation, b: Compensation) -> list[Change]:
+    """What masses and couplers were solved for and what is left; what was drawn for it is told with the sizes."""
+    drawn = frozenset({"mass", "preload", "preload_sized", "size"})
+    couplers = {pair.coupling(item.size.coupling): item for item in a.couplers}
+    return [
+        *keyed_changes(
+            "compensation of unit", {pair.mass(u.mass): u for u in a.units}, {u.mass: u for u in b.units}, skip=drawn
+        ),
+        *keyed_changes(
+            "compensation of coupler", couplers, {item.size.coupling: item for item in b.couplers}, skip=drawn
+        ),
+    ]
 
 
 def _within(item: FieldChange, tolerance: float) -> bool:

@@ -26,15 +26,19 @@ def new_folder(place: Path) -> Iterator[Path]:
     build left beside it is removed by the next.
 
     Raises:
-        UsageError: ``place`` is something that must not be replaced (a file, or a folder that is no build).
+        UsageError: ``place`` is something that must not be replaced (a file, or a folder that is no build), or no
+            folder can be made there.
     """
-    place = place.absolute()
-    _refuse_what_is_no_build(place)
-    place.parent.mkdir(parents=True, exist_ok=True)
-    _remove_abandoned(place)
+    given, place = place, place.absolute()
     fresh = place.parent / f".{place.name}.building-{os.getpid()}"
-    shutil.rmtree(fresh, ignore_errors=True)
-    fresh.mkdir()
+    try:
+        _refuse_what_is_no_build(place)
+        place.parent.mkdir(parents=True, exist_ok=True)
+        _remove_abandoned(place)
+        shutil.rmtree(fresh, ignore_errors=True)
+        fresh.mkdir()
+    except OSError as problem:
+        raise UsageError(f"{given}: no folder can be made there: {problem.strerror}; give another with -o") from problem
     try:
         yield fresh
         rest = resting_place(fresh, place)

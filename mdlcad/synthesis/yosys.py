@@ -76,6 +76,8 @@ def run_yosys(device: Device) -> YosysRun:
             outcome = older
     if "raw" not in outcome.designs:
         raise InputError(_why(device, outcome))
+    if not outcome.designs["raw"]["modules"]:
+        raise InputError([_no_top(device)])
     tops = _TOPS.search(outcome.log)
     return YosysRun(
         outcome.designs["raw"],
@@ -93,8 +95,7 @@ def _run(device: Device, edition: str) -> _Outcome:
         try:
             done = subprocess.run(
                 [sys.executable, "-P", str(worker), edition],
-                # one byte a character, so that the columns of Yosys are ours
-                input=device.verilog.encode("ascii", "replace").decode("ascii"),
+                input=_plain(device.verilog),
                 capture_output=True,
                 text=True,
                 encoding="utf-8",
@@ -115,6 +116,15 @@ def _run(device: Device, edition: str) -> _Outcome:
         return _Outcome(
             done.returncode, done.stdout + "\n" + done.stderr, read_findings(path / "findings.json"), designs
         )
+
+
+def _plain(verilog: str) -> str:
+    """The text with one byte and one column a character, so that the columns of Yosys and slang are ours.
+
+    A tab, for which slang counts up to eight columns, becomes a space; not in a text, which would be another one.
+    """
+    ascii_only = verilog.encode("ascii", "replace").decode("ascii")
+    return re.sub(r'"(?:\\.|[^"\\\n])*"|\t', lambda match: " " if match[0] == "\t" else match[0], ascii_only)
 
 
 def _why(device: Device, outcome: _Outcome) -> list[Diagnostic]:
@@ -141,6 +151,17 @@ def _why(device: Device, outcome: _Outcome) -> list[Diagnostic]:
     name = re.search(r"'\\?([A-Za-z_]\w*)'", words)
     pattern = rf"\b{re.escape(name[1])}\b" if name else r"\bmodule\b"
     return [locate(device, pattern, words, "write it with registers, wires, if, case and for")]
+
+
+def _no_top(device: Device) -> Diagnostic:
+    """Modules that use themselves, or each other: none is left that no other uses. At the first use of one."""
+    names = "|".join(re.findall(r"\bmodule\s+(?:automatic\s+)?(\w+)", device.verilog))
+    return locate(
+        device,
+        rf"(?<!module )\b(?:{names})\b(?=\s*#?\s*\w*\s*\()",
+        "every module is used by a module, so none of them is the behaviour",
+        "take out the instance of a module within itself; exactly one module is used by no other",
+    )
 
 
 def _refuse_files(device: Device) -> None:

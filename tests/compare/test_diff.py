@@ -180,6 +180,14 @@ def test_another_process_is_told_figure_by_figure(voter_build, tmp_path):
     assert any(what == "size of unit" for _, what, _ in changes(found, "parts"))
 
 
+def test_what_a_unit_was_solved_for_is_part_of_the_meaning(voter_build, copy):
+    with edited(copy, "compensation.json") as compensation:
+        compensation["units"][0]["asked"] += 0.25
+        compensation["couplers"][0]["left"] += 0.25
+        names = {compensation["units"][0]["mass"], compensation["couplers"][0]["size"]["coupling"]}
+    assert {name for _, _, name in changes(compare(voter_build, copy), "parts")} == names
+
+
 def grid_placement(copy: Path) -> None:
     """As a library without parts leaves it."""
     with edited(copy, "placement.json") as placement:

@@ -65,6 +65,14 @@ def test_what_cannot_be_used_is_said_with_what_there_is(arguments, words, capsys
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.parametrize("seed", ["x", "-1", "1.5", "2147483648", "", "٣x"])
+def test_a_seed_that_is_none_says_what_one_is(seed, capsys):
+    with pytest.raises(SystemExit) as left:
+        main(["build", str(MAZE), f"--seed={seed}"])
+    assert left.value.code == UNUSABLE
+    assert "argument --seed: a seed is a whole number from 0 to 2147483647" in capsys.readouterr().err
+
+
 def test_build_stops_after_the_network_when_told(tmp_path, capsys):
     folder = tmp_path / "maze"
     assert main(["build", str(MAZE), "-o", str(folder), "--to", "network"]) == HOLDS

@@ -75,6 +75,17 @@ def test_a_folder_that_is_no_build_is_never_replaced(tmp_path):
     assert (precious / "cat.png").read_text() == "cat"
 
 
+@pytest.mark.parametrize("place", ["file/maze", "file/deeper/maze", "x" * 300])
+def test_a_place_where_no_folder_can_be_made_is_refused(tmp_path, place):
+    (tmp_path / "file").write_text("mine")
+    with (
+        pytest.raises(UsageError, match=r"no folder can be made there: .*; give another with -o"),
+        new_folder(tmp_path / place),
+    ):
+        pass
+    assert [path.name for path in tmp_path.iterdir()] == ["file"]
+
+
 @pytest.mark.parametrize(
     ("content", "words"), [(None, "missing"), ("{", "not whole JSON"), ("[]", "shape"), ("{}", "shape")]
 )

@@ -309,6 +309,40 @@ def test_two_top_modules_are_refused() -> None:
     assert any("there are two behaviours" in item for item in refusal(text, {"a": 1}, {"q": 1}))
 
 
+def test_a_column_counts_characters_tabs_and_others_alike() -> None:
+    text = "module m(input a, output q);\n\tassign\tq = /* é */\ta & ghost;\nendmodule\n"
+    assert [item.split(";")[0] for item in refusal(text, {"a": 1}, {"q": 1})] == [
+        f"d.mdl:2:{text.splitlines()[1].index('ghost') + 1}: error: use of undeclared identifier 'ghost'"
+    ]
+
+
+def test_a_tab_in_a_text_stays_a_tab() -> None:
+    written, meant, space = (
+        synthesise(
+            device_of(f"module m(input [7:0] a, output q);\tassign q = a == {code};\nendmodule\n", {"a": 8}, {"q": 1})
+        )
+        for code in ('"\t"', "8'd9", "8'd32")
+    )
+    assert written.gates == meant.gates != space.gates
+
+
+@pytest.mark.parametrize(
+    ("text", "place"),
+    [
+        ("module m(input a, output q);\n  m again(a, q);\nendmodule\n", "2:3"),
+        (
+            "module m(input a, output q); n x(a, q); endmodule\nmodule n(input a, output q); m x(a, q); endmodule\n",
+            "1:30",
+        ),
+    ],
+)
+def test_modules_that_use_themselves_or_each_other_are_refused(text: str, place: str) -> None:
+    (found,) = refusal(text, {"a": 1}, {"q": 1})
+    assert found.startswith(
+        f"d.mdl:{place}: error: every module is used by a module, so none of them is the behaviour;"
+    )
+
+
 def test_modules_in_modules_and_characters_outside_ascii_are_fine() -> None:
     text = (
         "module half(input a, input b, output s); assign s = a ^ b; endmodule // Übertrag\n"
