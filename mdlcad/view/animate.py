@@ -13,7 +13,7 @@ import numpy as np
 from PIL import Image
 
 from mdlcad.errors import UsageError
-from mdlcad.view.caption import captioned
+from mdlcad.view.caption import caption
 from mdlcad.view.playback import Playback, play
 from mdlcad.view.scene import Look, Scene
 from mdlcad.view.stage import hidden_stage
@@ -65,16 +65,16 @@ def _times(playback: Playback, start: float, cycles: float | None) -> list[float
 
 
 def _pictures(scene: Scene, look: Look, playback: Playback, times: list[float]) -> list[Image.Image]:
-    stage = hidden_stage(scene.model, look.size, smooth="msaa")
-    keys = scene.painter.legend(look.colour)
+    moments = [moment_of(scene, playback, playback.frame(time)) for time in times]
+    words = caption(look.size, [now.title for now in moments], scene.painter.legend(look.colour))
+    stage = hidden_stage(scene.model, words.room, smooth="msaa")
     pictures = []
     try:
-        arrange(stage, scene, look, moment_of(scene, playback, playback.frame(times[0])))
-        for time in times:
-            now = moment_of(scene, playback, playback.frame(time))
+        arrange(stage, scene, look, moments[0])
+        for now in moments:
             stage.stand(explode=look.explode, displacements=now.moved)
             stage.paint(scene.painter.paint(look.colour, now.x, now.waves))
-            pictures.append(captioned(stage.picture(), now.title, keys))
+            pictures.append(words.around(stage.picture(), now.title))
     finally:
         stage.plotter.close()
     return pictures

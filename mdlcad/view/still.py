@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from PIL import Image
 
 from mdlcad.view.camera import pose
-from mdlcad.view.caption import captioned
+from mdlcad.view.caption import caption
 from mdlcad.view.colours import ColourBy
 from mdlcad.view.describe import Card
 from mdlcad.view.motion import Floats, displacements
@@ -74,14 +74,15 @@ def still(scene: Scene, look: Look) -> bytes:
     now = moment(scene, look)
     card = _card(scene, look)
     panel = round(_PANEL * look.size[0]) if card is not None else 0
+    words = caption(look.size, [now.title], scene.painter.legend(look.colour), panel)
     # what is found shines through many translucent bodies, which smoothing by oversampling would draw four times
-    stage = hidden_stage(scene.model, (look.size[0] - panel, look.size[1]), smooth="msaa" if panel else "ssaa")
+    stage = hidden_stage(scene.model, words.room, smooth="msaa" if panel else "ssaa")
     try:
         arrange(stage, scene, look, now)
         image = stage.picture()
     finally:
         stage.plotter.close()
-    return png(captioned(image, now.title, scene.painter.legend(look.colour), card, panel))
+    return png(words.around(image, now.title, card))
 
 
 def png(picture: Image.Image) -> bytes:

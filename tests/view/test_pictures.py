@@ -13,7 +13,7 @@ import mdlcad.view.animate
 from mdlcad.cli import HOLDS, UNUSABLE, main
 from mdlcad.view.animate import animate
 from mdlcad.view.camera import VIEW_ANGLE, Preset, pose
-from mdlcad.view.caption import captioned
+from mdlcad.view.caption import caption
 from mdlcad.view.colours import ColourBy, Key
 from mdlcad.view.scene import Look, Scene
 from mdlcad.view.stage import hidden_stage
@@ -143,10 +143,31 @@ def test_the_command_writes_what_was_asked_for(voter: Path, tmp_path: Path, caps
     assert list(tmp_path.iterdir()) == [path]
 
 
-def test_keys_stand_where_they_leave_the_picture_to_be_seen() -> None:
-    keys = [Key("#2b6cd4", f"what number {number} stands for") for number in range(9)]
-    small, large = (
-        np.asarray(captioned(np.full((*shape, 3), 255, np.uint8), "", keys)) for shape in ((240, 320), (720, 960))
-    )
-    assert (small == 255).all()
-    assert (large == (0x2B, 0x6C, 0xD4)).all(axis=2).sum() > 9 * 100
+KEYS = [Key("#2b6cd4", f"what number {number} stands for") for number in range(9)]
+
+
+@pytest.mark.parametrize("size", [(960, 720), (640, 640), (400, 300), (320, 240), (100, 100)])
+@pytest.mark.parametrize("title", ["short", "a title of so many words that it takes several lines of any picture " * 3])
+def test_words_cover_nothing_of_what_is_shown(size: tuple[int, int], title: str) -> None:
+    words = caption(size, ["short", title], KEYS)
+    black = np.zeros((words.room[1], words.room[0], 3), np.uint8)
+    picture = np.asarray(words.around(black, title))
+    assert picture.shape == (size[1], size[0], 3)
+    assert words.room[0] == size[0]
+    assert words.room[1] >= size[1] // 2
+    shown = picture[words.above : words.above + words.room[1]]
+    if words.above:
+        assert (shown == 0).all()
+    else:
+        assert size[1] <= 300, "a title lies over a small picture alone"
+    assert [key for row in words.rows for key in row] in (KEYS, [])
+
+
+def test_small_pictures_leave_out_the_keys_and_large_ones_show_them_all() -> None:
+    small, large = caption((200, 150), ["a"], KEYS), caption((960, 720), ["a"], KEYS)
+    assert small.rows == ()
+    assert [key for row in large.rows for key in row] == KEYS
+    picture = np.asarray(large.around(np.full((large.room[1], large.room[0], 3), 255, np.uint8), "a"))
+    blue = (picture == (0x2B, 0x6C, 0xD4)).all(axis=2)
+    assert blue.sum() > 9 * 100
+    assert not blue[: large.above + large.room[1]].any()
