@@ -56,7 +56,8 @@ def words_of(step: AssemblyStep, process: Process, sizing: Sizing) -> tuple[str,
     if step.kind is StepKind.CLOCK:
         return (
             f"{below}Lay its spacer on the rim, and the plate within it, the handle out to the right.",
-            "Press its pins into the plate first. It must slide to and fro by "
+            # a phase without masses has a plate without pins
+            f"{'Press its pins into the plate first. ' if _new_pins(step) else ''}It must slide to and fro by "
             f"{2.0 * sizing.rules.clock_throw:.2f} mm without touching a pin of the plates below.",
         )
     if step.kind is StepKind.UNITS:
@@ -72,7 +73,7 @@ def words_of(step: AssemblyStep, process: Process, sizing: Sizing) -> tuple[str,
             f"{below}Lay the rim, then {what} where it is drawn, and press it down onto the pins that come up there.",
         ]
         kinds = {body.kind for body in step.bodies}
-        if BodyKind.PIN in kinds:
+        if _new_pins(step):
             words.append("Press in the new pins, which join it to the plates above.")
         if BodyKind.BIAS in kinds or BodyKind.ROCKER in kinds:
             words.append("Eyes of rockers and bias leaves stay empty until their posts come, through the cover.")
@@ -97,6 +98,10 @@ def words_of(step: AssemblyStep, process: Process, sizing: Sizing) -> tuple[str,
         f"Drop the screws in, M{process.frame.screw:g}, as long as the stack is high and a nut more.",
         "Tighten crosswise, by hand, until the shims do not move.",
     )
+
+
+def _new_pins(step: AssemblyStep) -> bool:
+    return any(body.kind is BodyKind.PIN for body in step.bodies)
 
 
 def _shim(step: AssemblyStep, process: Process) -> str:

@@ -7,6 +7,7 @@ name and picks out its whole net. Same input, same bytes.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from html import escape
 from itertools import pairwise
@@ -233,8 +234,10 @@ def _hubs(pen: Pen, placement: Placement, rules: LayoutRules, nets: dict[str, st
 def _ports(pen: Pen, network: Network, placement: Placement, grow: float) -> None:
     sensors = {port.bit for port in network.sensors}
     for port in placement.ports:
+        # along the tab, which leaves level or upright, whichever is nearer to the wall's normal
         x, y = port.normal
-        anchor = "middle" if abs(y) > abs(x) else "start" if x > 0 else "end"
+        x, y = (0.0, math.copysign(1.0, y)) if abs(y) > abs(x) else (math.copysign(1.0, x), 0.0)
+        anchor = "middle" if y else "start" if x > 0 else "end"
         reach = (13.0 if anchor == "middle" else 9.0) * grow
         sensor = port.bit in sensors
         tip, base = (2.2, 6.4) if sensor else (6.4, 2.2)

@@ -60,6 +60,15 @@ def test_every_step_has_a_number_a_title_and_a_drawing(page, device, bodies):
     assert page.count("</svg>") == len(steps) + 1
 
 
+def test_pins_are_pressed_into_those_clock_plates_that_have_some(device, bodies):
+    bare = [body for body in bodies if body.kind is not BodyKind.PIN or not body.name.startswith("pin.clock")]
+    assert len(bare) < len(bodies)
+    for made, pressed in ((bodies, 3), (bare, 0)):
+        text = guide(device.network, device.sizing, device.placement, device.process, made, DRIVE)
+        assert text.count("Press its pins into the plate first.") == pressed
+        assert text.count("It must slide to and fro by") == 3
+
+
 def test_every_unit_has_its_preload_and_every_bent_leaf_its_bend(page, device):
     text = unescape(page)
     for unit in device.sizing.units:
