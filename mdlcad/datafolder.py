@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
+from typing import Any
 
 from mdlcad.errors import UsageError
 
@@ -52,3 +54,19 @@ def list_data(kind: str, suffix: str) -> list[str]:
         for item in data_folder(kind).iterdir()
         if (item.suffix == suffix if suffix else item.is_dir()) and not item.name.startswith((".", "_"))
     )
+
+
+def refuse_non_numbers(where: str, table: Any, key: str = "") -> None:
+    """Refuse nan and inf, which TOML knows as numbers and nothing here can have.
+
+    Args:
+        where: what to call the file; table: what was read of it; key: where in it, dotted.
+
+    Raises:
+        UsageError: there is one; names the file and the key.
+    """
+    if isinstance(table, dict | list):
+        for inner, value in table.items() if isinstance(table, dict) else enumerate(table):
+            refuse_non_numbers(where, value, f"{key}.{inner}" if key else str(inner))
+    elif isinstance(table, float) and not math.isfinite(table):
+        raise UsageError(f"{where}: {key}: must be a number, not {table}")

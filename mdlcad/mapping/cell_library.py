@@ -9,7 +9,7 @@ from typing import Literal
 
 import msgspec
 
-from mdlcad.datafolder import find_data
+from mdlcad.datafolder import find_data, refuse_non_numbers
 from mdlcad.errors import UsageError
 from mdlcad.mapping.characterisation import Characterisation
 from mdlcad.network.model import Dynamics
@@ -104,6 +104,7 @@ def load_library(name_or_path: str) -> Library:
         raise UsageError(f"{label}: cannot be read: {trouble.strerror}") from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as trouble:
         raise UsageError(f"{label}: not TOML: {trouble}") from None
+    refuse_non_numbers(label, table)
     unknown = _unknown_keys(table)
     if unknown:
         raise UsageError(f"{label}: unknown key '{unknown[0]}'; remove it")

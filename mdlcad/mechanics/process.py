@@ -16,7 +16,7 @@ from typing import Any
 
 import msgspec
 
-from mdlcad.datafolder import find_data, list_data
+from mdlcad.datafolder import find_data, list_data, refuse_non_numbers
 from mdlcad.errors import UsageError
 
 
@@ -215,15 +215,18 @@ def load_process(name_or_path: str | Path) -> Process:
     """Read a process by name (of the folder ``geometry``) or by path.
 
     Raises:
-        UsageError: no such file, not TOML, a key missing, unknown, of the wrong type or out of range; the message
+        UsageError: no such file, not to be read, not TOML, a key missing, unknown, of the wrong type or out of range; the message
             names the file and the key.
     """
     path = find_data("geometry", str(name_or_path), ".toml")
     where = path.name
     try:
         data = tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise UsageError(f"{where}: cannot be read: {error.strerror}") from error
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise UsageError(f"{where}: not a TOML file: {error}") from error
+    refuse_non_numbers(where, data)
     try:
         process = msgspec.convert(data, Process)
     except msgspec.ValidationError as error:

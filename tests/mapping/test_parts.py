@@ -175,6 +175,8 @@ def test_the_shipped_library_loads() -> None:
     ("change", "expected"),
     [
         (("k0 = 3.5", "k0 = -3.5"), "mass.k0 must be positive"),
+        (("k0 = 3.5", "k0 = inf"), "mass.k0: must be a number, not inf"),
+        (("load_limit = 8", "load_limit = nan"), "gates.load_limit: must be a number, not nan"),
         (("k1 = -3.0", "k1 = -1.0"), "mass.k1 k0 + 2 k1 must be negative"),
         (("phases = 3", "phases = 2"), "dynamics.phases must be 3"),
         (("strength = 0.2", 'strength = "soft"'), "$.coupling.strength"),

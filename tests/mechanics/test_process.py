@@ -38,6 +38,9 @@ def test_plates_lie_on_each_other_with_the_gap_between() -> None:
         ('name = "V", role = "trunk"', 'name = "V", role = "rung"', "stack.plates"),
         ("modulus = 2800.0", "modulus = 0.0", "materials.pom.modulus"),
         ("[unit]", "[unit", "TOML"),
+        ("modulus = 2800.0", "modulus = nan", "materials.pom.modulus: must be a number, not nan"),
+        ("kerf = 0.2", "kerf = inf", "machine.kerf: must be a number, not inf"),
+        ("z_gap = 0.3", "z_gap = -inf", "stack.z_gap: must be a number, not -inf"),
     ],
 )
 def test_a_fault_is_named_with_file_and_key(tmp_path: Path, old: str, new: str, key: str) -> None:
@@ -47,6 +50,12 @@ def test_a_fault_is_named_with_file_and_key(tmp_path: Path, old: str, new: str, 
     with pytest.raises(UsageError, match=r"mine\.toml") as caught:
         load_process(path)
     assert key in str(caught.value)
+
+
+def test_a_folder_is_no_process(tmp_path: Path) -> None:
+    (tmp_path / "mine.toml").mkdir()
+    with pytest.raises(UsageError, match=r"mine\.toml: cannot be read"):
+        load_process(tmp_path / "mine.toml")
 
 
 def test_an_unknown_name_lists_what_there_is() -> None:

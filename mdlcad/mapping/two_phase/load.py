@@ -9,7 +9,7 @@ from typing import Any
 
 import msgspec
 
-from mdlcad.datafolder import find_data
+from mdlcad.datafolder import find_data, refuse_non_numbers
 from mdlcad.errors import UsageError
 from mdlcad.mapping.characterisation import Characterisation
 from mdlcad.mapping.request import AS_WRITTEN, MappingRequest
@@ -103,7 +103,9 @@ def load_two_phase(name_or_path: str, request: MappingRequest = AS_WRITTEN) -> T
     path = found / "library.toml" if found.is_dir() else found
     label = f"{path.parent.name}/{path.name}"
     try:
-        data = msgspec.convert(tomllib.loads(path.read_text(encoding="utf-8")), LibraryData)
+        table = tomllib.loads(path.read_text(encoding="utf-8"))
+        refuse_non_numbers(label, table)
+        data = msgspec.convert(table, LibraryData)
         return _library(data, request)
     except OSError as trouble:
         raise UsageError(f"{label}: cannot be read: {trouble.strerror}") from None

@@ -91,6 +91,7 @@ def test_robust_is_the_default() -> None:
         ('name = "NOT"', 'name = "NOR"', "share a name"),
         ('state = "M"', 'state = "Q"', "state"),
         ("inertia = 0.05         # m\n", "inertia = -1\n", "inertia"),
+        ("inertia = 0.05         # m\n", "inertia = nan\n", "inertia: must be a number, not nan"),
         ("[roles]", "[roles", "not TOML"),
     ],
 )
