@@ -7,6 +7,7 @@ the checksum of a stage is the SHA-256 of those bytes.
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import os
 from pathlib import Path
@@ -66,10 +67,18 @@ def checksum(data: bytes) -> str:
 
 
 def write_atomic(path: Path, data: bytes) -> None:
-    """Write beside ``path`` and rename, so that a reader sees the old file or the new one, never a part."""
+    """Write beside ``path`` and rename, so that a reader sees the old file or the new one, never a part.
+
+    If it cannot be written (OSError), nothing is left.
+    """
     partial = path.with_name(path.name + ".partial")
-    with partial.open("wb") as stream:
-        stream.write(data)
-        stream.flush()
-        os.fsync(stream.fileno())
-    partial.replace(path)
+    try:
+        with partial.open("wb") as stream:
+            stream.write(data)
+            stream.flush()
+            os.fsync(stream.fileno())
+        partial.replace(path)
+    except OSError:
+        with contextlib.suppress(OSError):
+            partial.unlink()
+        raise

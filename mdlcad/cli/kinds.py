@@ -40,17 +40,15 @@ def bed(text: str) -> tuple[float, float]:
 
 def jobs(text: str) -> int:
     """A number of processors."""
-    value = int(text)
-    if value < 1:
-        raise argparse.ArgumentTypeError("at least one processor")
+    if not text.isdecimal() or (value := int(text)) < 1:
+        raise argparse.ArgumentTypeError("a number of processors, 1 or more")
     return value
 
 
 def count(text: str) -> int:
     """A number of times."""
-    value = int(text)
-    if not 1 <= value <= 10**9:
-        raise argparse.ArgumentTypeError("a whole number from 1 on")
+    if not text.isdecimal() or not 1 <= (value := int(text)) <= 10**9:
+        raise argparse.ArgumentTypeError("a whole number from 1 to 1000000000")
     return value
 
 

@@ -67,6 +67,8 @@ def _holds(folder: Path) -> bool:
 def _refuse_what_is_no_build(place: Path) -> None:
     if place.exists() and not place.is_dir():
         raise UsageError(f"{place.name}: is a file; give a folder with -o")
+    if place.is_symlink() and not place.exists():
+        raise UsageError(f"{place.name}: is a link that leads nowhere; give a folder with -o, or remove it")
     if place.is_dir() and any(place.iterdir()) and not (place / REPORT).exists():
         raise UsageError(f"{place.name}: is a folder that holds no build; give another with -o, or empty it")
 

@@ -215,8 +215,8 @@ def load_process(name_or_path: str | Path) -> Process:
     """Read a process by name (of the folder ``geometry``) or by path.
 
     Raises:
-        UsageError: no such file, not to be read, not TOML, a key missing, unknown, of the wrong type or out of range; the message
-            names the file and the key.
+        UsageError: no such file, not to be read, not TOML, a key missing, unknown, of the wrong type or out of range;
+            the message names the file and the key.
     """
     path = find_data("geometry", str(name_or_path), ".toml")
     where = path.name

@@ -65,12 +65,20 @@ def test_what_cannot_be_used_is_said_with_what_there_is(arguments, words, capsys
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("seed", ["x", "-1", "1.5", "2147483648", "", "٣x"])
-def test_a_seed_that_is_none_says_what_one_is(seed, capsys):
+@pytest.mark.parametrize("given", ["x", "-1", "1.5", "", "٣x", "1e3"])
+@pytest.mark.parametrize(
+    ("option", "words"),
+    [
+        ("seed", "a seed is a whole number from 0 to 2147483647"),
+        ("seeds", "a whole number from 1 to 1000000000"),
+        ("jobs", "a number of processors, 1 or more"),
+    ],
+)
+def test_a_number_that_is_none_says_what_one_is(option, words, given, capsys):
     with pytest.raises(SystemExit) as left:
-        main(["build", str(MAZE), f"--seed={seed}"])
+        main(["build", str(MAZE), f"--{option}={given}"])
     assert left.value.code == UNUSABLE
-    assert "argument --seed: a seed is a whole number from 0 to 2147483647" in capsys.readouterr().err
+    assert f"argument --{option}: {words}" in capsys.readouterr().err
 
 
 def test_build_stops_after_the_network_when_told(tmp_path, capsys):

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import pytest
 
-from mdlcad.artefact import load
+from mdlcad.artefact import load, write_atomic
 from mdlcad.errors import UsageError
 from mdlcad.flow.folder import REPORT, new_folder
 from mdlcad.flow.step import check_order
@@ -73,6 +73,16 @@ def test_a_folder_that_is_no_build_is_never_replaced(tmp_path):
     with pytest.raises(UsageError, match="is a file"), new_folder(precious / "cat.png"):
         pass
     assert (precious / "cat.png").read_text() == "cat"
+    (tmp_path / "link").symlink_to(tmp_path / "gone")
+    with pytest.raises(UsageError, match="link that leads nowhere"), new_folder(tmp_path / "link"):
+        pass
+
+
+def test_a_file_that_cannot_be_written_leaves_nothing(tmp_path):
+    (tmp_path / "folder").mkdir()
+    with pytest.raises(OSError, match="directory"):
+        write_atomic(tmp_path / "folder", b"page")
+    assert [path.name for path in tmp_path.iterdir()] == ["folder"]
 
 
 @pytest.mark.parametrize("place", ["file/maze", "file/deeper/maze", "x" * 300])
