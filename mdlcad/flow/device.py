@@ -16,7 +16,7 @@ from mdlcad.mechanics import Process
 from mdlcad.mechanics.compensation import COMPENSATION_FILE, Compensation, compensate, compensated
 from mdlcad.parts import build_parts
 from mdlcad.parts.clock import device_loads
-from mdlcad.parts.stiffness import CarrierStiffness, carrier_stiffnesses
+from mdlcad.parts.stiffness import CarrierStiffness, carrier_stiffnesses, lifts_of
 from mdlcad.parts.store import Parts, bodies_of, records_of
 from mdlcad.placement.placement import Placement
 from mdlcad.report.report import Search
@@ -93,11 +93,12 @@ def _carriers(state: State, process: Process) -> tuple[CarrierStiffness, ...]:
 
 def compensated_units(job: Job, state: State, progress: Progress) -> State:
     """Preloads that make up for springs and parasitics."""
-    sizing, carriers = need(state.sizing), _carriers(state, stacked(job.process, state))
+    process = stacked(job.process, state)
+    sizing, carriers = need(state.sizing), _carriers(state, process)
+    stiffness = {item.coupling: item.stiffness for item in carriers}
+    lifts = lifts_of(need(state.placement), need(state.layout), process)
     try:
-        found = compensate(
-            need(state.network), job.process, sizing, {item.coupling: item.stiffness for item in carriers}
-        )
+        found = compensate(need(state.network), job.process, sizing, stiffness, lifts)
     except ArithmeticError as problem:
         raise SignoffError(f"the units cannot make up for their springs: {problem}") from problem
     return replace(state, compensation=found, sizing=compensated(sizing, found), carriers=carriers)

@@ -11,12 +11,14 @@ from mdlcad.proof.outcome import Proof
 from mdlcad.proof.prove import prove
 from mdlcad.proof.reference import build_reference
 from mdlcad.signoff.drawn import measure_device
-from mdlcad.signoff.extraction import TILTING, Built, BuiltDevice, Tilting
+from mdlcad.signoff.extraction import Built, BuiltDevice
 from mdlcad.signoff.geometry import check_geometry
 from mdlcad.signoff.lvs import LvsResult, compare, recover
 from mdlcad.signoff.margins import find_margins, grid_of
 from mdlcad.signoff.readback import read_step
 from mdlcad.signoff.sections import read_cut
+from mdlcad.signoff.stops import stops_of
+from mdlcad.signoff.tilting import TILTING, TiltingProof, tilting_proof
 
 
 def checked(job: Job, state: State, progress: Progress) -> State:
@@ -71,20 +73,23 @@ def extract(job: Job, state: State, progress: Progress) -> State:
     built = Built(drawn, network, need(state.sizing), state.carriers, process)
     reference = build_reference(need(state.device))
     extracted = prove(built.network, reference, seed=job.seed, workers=job.workers, built=built.system)
-    loose = Built(drawn, network, need(state.sizing), state.carriers, process, tilting=Tilting.FREE)
-    tilting = prove(loose.network, reference, seed=job.seed, workers=job.workers, built=loose.system)
+    sizing = need(state.sizing)
+    stops = stops_of(found, recovered, drawn.units, process, sizing.rules)
+    loose = Built(drawn, network, sizing, state.carriers, process, stops=stops)
+    proof = prove(loose.network, reference, seed=job.seed, workers=job.workers, built=loose.system)
+    tilting = tilting_proof(proof, stops, process, sizing.law)
     return replace(state, lvs=result, extracted=extracted, tilting=tilting, built=built.record())
 
 
 def restore_extraction(job: Job, state: State, files: tuple[str, ...]) -> State:
     """What ``extract`` made, from its files."""
     lvs, extracted = load(job.folder, "extraction.json", tuple[LvsResult, Proof])
-    tilting, built = load(job.folder, TILTING, Proof), load(job.folder, "built.json", BuiltDevice)
+    tilting, built = load(job.folder, TILTING, TiltingProof), load(job.folder, "built.json", BuiltDevice)
     return replace(state, lvs=lvs, extracted=extracted, tilting=tilting, built=built)
 
 
 def write_built(job: Job, state: State) -> None:
-    """Write built.json, the device as the files draw it, and tilting.json, its proof with shuttles that tilt freely."""
+    """Write built.json, the device as the files draw it, and tilting.json, its proof with shuttles that tilt."""
     write_atomic(job.folder / "built.json", to_json(state.built))
     write_atomic(job.folder / TILTING, to_json(state.tilting))
 

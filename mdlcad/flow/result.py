@@ -8,7 +8,7 @@ from mdlcad.parts.body import Body
 from mdlcad.parts.bom import bill_of_materials
 from mdlcad.parts.plates import plates_of
 from mdlcad.parts.tiles import tiles_of
-from mdlcad.report.make import behaviour_of, extent_of, hashes_of, mechanics_of
+from mdlcad.report.make import behaviour_of, extent_of, hashes_of, mechanics_of, tilts_of
 from mdlcad.report.report import Lvs, Report, StageRecord, Stopped
 from mdlcad.routing.decks import process_of, units_of
 
@@ -32,7 +32,8 @@ def make_report(
         period=network.dynamics.period if network else None,
         behaviour=behaviour_of(state.proof),
         extracted=behaviour_of(state.extracted),
-        tilting=behaviour_of(state.tilting),
+        tilting=behaviour_of(state.tilting.proof if state.tilting else None),
+        tilts=tilts_of(state.tilting),
         lvs=Lvs(state.lvs.matched, state.lvs.differences) if state.lvs else None,
         drc=state.rules.counts if state.rules else None,
         mechanics=mechanics_of(state.sizing, state.carriers, state.compensation),
@@ -72,4 +73,7 @@ def failures(state: State, stopped: Stopped | None) -> list[str]:
     if state.extracted is not None and not state.extracted.holds:
         words = "; ".join(str(item) for item in state.extracted.first_mismatches[:3]) or "nothing was checked"
         found.append(f"the device as drawn does not behave as the program says: {words}")
+    if state.tilting is not None and not state.tilting.proof.holds:
+        words = "; ".join(str(item) for item in state.tilting.proof.first_mismatches[:3]) or "nothing was checked"
+        found.append(f"the device as drawn, its shuttles tilting, does not behave as the program says: {words}")
     return found

@@ -29,6 +29,7 @@ from mdlcad.signoff.extraction import BuiltDevice
 from mdlcad.signoff.lvs import LvsResult
 from mdlcad.signoff.margins import Margins
 from mdlcad.signoff.summary import DesignRules
+from mdlcad.signoff.tilting import TiltingProof
 from mdlcad.synthesis.netlist import Netlist
 
 T = TypeVar("T")
@@ -103,7 +104,7 @@ class State:
     pictures: tuple[str, ...] = ()
     lvs: LvsResult | None = None
     extracted: Proof | None = None
-    tilting: Proof | None = None
+    tilting: TiltingProof | None = None
     built: BuiltDevice | None = None
     margins: Margins | None = None
 

@@ -195,7 +195,7 @@ STEPS: tuple[Step, ...] = (
         lambda s: (
             f"layout {'matches' if need(s.lvs).matched else 'DIFFERS FROM'} the network; as built "
             f"{need(s.extracted).transitions_checked} transitions, {need(s.extracted).mismatches} mismatches; "
-            f"shuttles tilting freely {need(s.tilting).mismatches}"
+            f"shuttles tilting {need(s.tilting).proof.mismatches}"
         ),
         lambda s: to_json([s.lvs, s.extracted]),
         restore_extraction,

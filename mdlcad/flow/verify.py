@@ -24,12 +24,11 @@ from mdlcad.network.model import Network
 from mdlcad.parts import build_parts
 from mdlcad.parts.clock import device_loads
 from mdlcad.parts.plates import plates_of
-from mdlcad.parts.stiffness import carrier_stiffnesses
+from mdlcad.parts.stiffness import carrier_stiffnesses, lifts_of
 from mdlcad.parts.store import Parts, bodies_of, records_of
 from mdlcad.placement.check_grid import check_grid
 from mdlcad.placement.placement import Placement
 from mdlcad.placement.unit_grid import GridPlacement
-from mdlcad.proof.outcome import Proof
 from mdlcad.proof.prove import prove
 from mdlcad.proof.reference import build_reference
 from mdlcad.report.guide import GUIDE, guide
@@ -37,12 +36,14 @@ from mdlcad.report.report import Report
 from mdlcad.routing.decks import process_of
 from mdlcad.routing.layout import Layout
 from mdlcad.signoff.drawn import measure_device
-from mdlcad.signoff.extraction import TILTING, Built, BuiltDevice, Tilting
+from mdlcad.signoff.extraction import Built, BuiltDevice
 from mdlcad.signoff.files import check_bodies
 from mdlcad.signoff.geometry import check_geometry
 from mdlcad.signoff.lvs import compare, recover
 from mdlcad.signoff.readback import read_step
 from mdlcad.signoff.sections import read_cut
+from mdlcad.signoff.stops import stops_of
+from mdlcad.signoff.tilting import TILTING, TiltingProof, tilting_proof
 from mdlcad.synthesis.netlist import Netlist
 
 
@@ -101,11 +102,12 @@ def _verify(folder: Path, report: Report, workers: int, say: Callable[[str], Non
     process = process_of(process, placement)
     carriers = carrier_stiffnesses(network, placement, layout, sizing, process)
     stiffness = {item.coupling: item.stiffness for item in carriers}
+    lifts = lifts_of(placement, layout, process)
     solved = load(folder, COMPENSATION_FILE, Compensation)
     step(
         "compensation",
         []
-        if compensate(network, process, sizing, stiffness) == solved
+        if compensate(network, process, sizing, stiffness, lifts) == solved
         else [f"{COMPENSATION_FILE}: not what the carriers ask for"],
     )
     sizing = compensated(sizing, solved)
@@ -143,9 +145,12 @@ def _verify(folder: Path, report: Report, workers: int, say: Callable[[str], Non
         step(
             "extracted", ([] if extracted.holds else words) + ([] if kept else ["built.json: not what the files draw"])
         )
-        loose = Built(drawn, network, sizing, carriers, process, tilting=Tilting.FREE)
-        freely = prove(loose.network, reference, seed=report.seed, workers=workers, built=loose.system)
-        step("tilting", [] if freely == load(folder, TILTING, Proof) else [f"{TILTING}: not what the files draw"])
+        stops = stops_of(found, recovered, drawn.units, process, sizing.rules)
+        loose = Built(drawn, network, sizing, carriers, process, stops=stops)
+        tilting = prove(loose.network, reference, seed=report.seed, workers=workers, built=loose.system)
+        words = [str(item) for item in tilting.first_mismatches] or ["nothing was checked"]
+        kept = load(folder, TILTING, TiltingProof) == tilting_proof(tilting, stops, process, sizing.law)
+        step("tilting", ([] if tilting.holds else words) + ([] if kept else [f"{TILTING}: not what the files draw"]))
     step("page", _check_page(folder))
     return broken
 

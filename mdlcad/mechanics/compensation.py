@@ -1,19 +1,21 @@
 """Compensation, once carriers are known: couplers and preloads solved so that masses have what the network asks for.
 
 A routed carrier gives way: its coupler is weaker, and so are its self terms. The coupler is drawn stiffer for it, with
-lower legs on the same length, in steps and as far as its strain allows. Then every unit's preload is solved with the
+lower legs on the same length, in steps and as far as its strain allows; and for what tilting shuttles take of it, half
+way between none and all (``lean``). Then every unit's preload is solved with the
 springs that this leaves. Sizing keeps room for every preload down to that of the softest carriers allowed.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from mdlcad.artefact import load
 from mdlcad.errors import UsageError
 from mdlcad.mechanics.findings import Finding, findings_of
+from mdlcad.mechanics.lean import NO_LIFTS, Lifts, middle_factors
 from mdlcad.mechanics.leaves import LeafSize, stiffened, trim
 from mdlcad.mechanics.preload import COUPLER_STEP, RIGID_CARRIER, compensator, leaf_in_row, self_terms
 from mdlcad.mechanics.process import Process
@@ -83,11 +85,13 @@ class Compensation:
     findings: tuple[Finding, ...]
 
 
-def compensate(network: Network, process: Process, sizing: Sizing, carriers: Mapping[str, float]) -> Compensation:
+def compensate(
+    network: Network, process: Process, sizing: Sizing, carriers: Mapping[str, float], lifts: Lifts = NO_LIFTS
+) -> Compensation:
     """Solve every coupler's stiffness and every unit's preload.
 
     Args:
-        sizing: as ``size`` made it; carriers: N/mm, by coupling.
+        sizing: as ``size`` made it; carriers: N/mm, by coupling; lifts: how high its flexures pull at shuttles.
 
     Raises:
         UsageError: the beams of the process find no equilibrium at these preloads.
@@ -95,10 +99,17 @@ def compensate(network: Network, process: Process, sizing: Sizing, carriers: Map
     """
     law, series = sizing.law, sizing.series
     peaks = {unit.mass: unit.amplitude / process.unit.throw_unit for unit in sizing.units}
-    couplers = _couplers(network, process, sizing, carriers)
+    steps, least = (_steps(network, sizing, carriers, above) for above in (lifts, NO_LIFTS))
+    known: dict[tuple[LeafSize, int], LeafSize] = {}
+    couplers = _couplers(network, process, sizing, carriers, steps, known)
     springs = self_terms(network, [item.size for item in couplers], sizing.biases, law, carriers)
     solver = compensator(network, process, law, series, peaks, springs)
     preloads = solver.preloads(springs)
+    # what is drawn stiffer for tilting shuttles asks for more preload: no more of it than the units have room for
+    while steps != (steps := _eased(network, sizing, preloads, couplers, least)):
+        couplers = _couplers(network, process, sizing, carriers, steps, known)
+        springs = self_terms(network, [item.size for item in couplers], sizing.biases, law, carriers)
+        preloads = solver.preloads(springs)
     strains = unit_strains(network, process, law, series, preloads, peaks)
     units = []
     for mass, unit in zip(network.masses, sizing.units, strict=True):
@@ -125,17 +136,52 @@ def compensate(network: Network, process: Process, sizing: Sizing, carriers: Map
     return replace(draft, findings=found)
 
 
+def _under(network: Network, carriers: Mapping[str, float]) -> list[float]:
+    """Stiffness of the carrier under every coupling, N/mm."""
+    return [min(carriers.get(coupling.name, RIGID_CARRIER), RIGID_CARRIER) for coupling in network.couplings]
+
+
+def _steps(network: Network, sizing: Sizing, carriers: Mapping[str, float], lifts: Lifts) -> list[int]:
+    """By how many steps every coupler is to be stiffer than sized."""
+    leaves, under = [part.leaf for part in sizing.couplers], _under(network, carriers)
+    factors = middle_factors(network, leaves, under, sizing.biases, sizing.law, lifts)
+    # a carrier no stiffer than its coupler is beyond help, and an error of the design rules
+    return [
+        round((float(factor) - 1.0) / COUPLER_STEP) if carrier > 2.0 * leaf.own else 0
+        for factor, carrier, leaf in zip(factors, under, leaves, strict=True)
+    ]
+
+
+def _eased(
+    network: Network,
+    sizing: Sizing,
+    preloads: Mapping[str, float],
+    couplers: Sequence[CouplerCompensation],
+    least: Sequence[int],
+) -> list[int]:
+    """The steps of ``couplers`` as drawn, one less at units with more preload than room, not fewer than ``least``."""
+    tight = {unit.mass for unit in sizing.units if preloads[unit.mass] > unit.room[1]}
+    steps = []
+    for coupling, part, found, low in zip(network.couplings, sizing.couplers, couplers, least, strict=True):
+        drawn = round((found.size.leaf.own / part.leaf.own - 1.0) / COUPLER_STEP)
+        less = drawn > low and (coupling.source in tight or coupling.target in tight)
+        steps.append(drawn - 1 if less else drawn)
+    return steps
+
+
 def _couplers(
-    network: Network, process: Process, sizing: Sizing, carriers: Mapping[str, float]
+    network: Network,
+    process: Process,
+    sizing: Sizing,
+    carriers: Mapping[str, float],
+    steps: Sequence[int],
+    known: dict[tuple[LeafSize, int], LeafSize],
 ) -> tuple[CouplerCompensation, ...]:
     law = sizing.law
-    known: dict[tuple[LeafSize, int], LeafSize] = {}
     found = []
-    for coupling, part in zip(network.couplings, sizing.couplers, strict=True):
-        carrier = min(carriers.get(coupling.name, RIGID_CARRIER), RIGID_CARRIER)
+    under = _under(network, carriers)
+    for coupling, part, carrier, step in zip(network.couplings, sizing.couplers, under, steps, strict=True):
         leaf = part.leaf
-        # f c K / (K + f s) = c; a carrier no stiffer than its coupler is beyond help, and an error of the design rules
-        step = round((1.0 / (1.0 - leaf.own / carrier) - 1.0) / COUPLER_STEP) if carrier > 2.0 * leaf.own else 0
         drawn = coupler_size(coupling, _stiffer(leaf, step, known, process, sizing), process, law)
         found.append(
             CouplerCompensation(

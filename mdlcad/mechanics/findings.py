@@ -24,6 +24,13 @@ class Finding:
     message: str
 
 
+def most_preload(network: Network, process: Process, law: UnitLaw, series: SeriesSpring) -> float:
+    """The preload, mm, with which the clock's farthest pushes the stems of a series spring to a gap from each other."""
+    # the spring takes the share of the clock's motion that the beams leave it
+    share = law.axial_stiffness / law.series_stiffness
+    return (series.clear - process.machine.min_gap) / share - clock_swing(network, law)
+
+
 def findings_of(
     network: Network,
     process: Process,
@@ -58,10 +65,9 @@ def findings_of(
         most("strain", f"unit.{unit.mass}", unit.strain, limit, "beams strained at the largest throw seen")
         least("preload_room", f"unit.{unit.mass}", unit.preload, unit.room[0], "its clock block overruns its slot")
         most("preload_room", f"unit.{unit.mass}", unit.preload, unit.room[1], "its series spring has no room for it")
-    # the spring takes the share of the clock's motion that the beams leave it
-    share = law.axial_stiffness / law.series_stiffness
-    pushed = share * (max(unit.room[1] for unit in units) + clock_swing(network, law))
-    most("preload_room", "unit.series", pushed, series.travel, "stems are pushed nearer to each other than a gap")
+    room = max(unit.room[1] for unit in units)
+    nearer = "stems are pushed nearer to each other than a gap"
+    most("preload_room", "unit.series", room, most_preload(network, process, law, series), nearer)
     for mass in network.masses:
         spread = max(abs(other.k1) for other in network.masses) - abs(mass.k1)
         most("gain", f"unit.{mass.name}", spread, 0.0, "clock plates have one stroke: its k1 cannot be smaller")

@@ -21,6 +21,10 @@ COUPLER_STEP = 0.04
 """Steps of stiffness, relative, in which couplers are drawn stiffer to make up for their carriers' give. A finer one
 would leave less (here at most half of it, where strain allows it) and make more parts that differ."""
 
+TILT_STEPS = 2.0
+"""Steps by which the couplers of a mass may be stiffer, on average, because shuttles tilt (``lean``): their self terms
+ask for more preload, and units have room for this much of it, as far as their series springs allow."""
+
 RIGID_CARRIER = 1e9
 """N/mm of a carrier that is not known yet, or of none."""
 
@@ -54,19 +58,25 @@ def self_terms(
 
 
 def most_self_terms(
-    network: Network, couplers: Sequence[CouplerSize], biases: Sequence[BiasSize], law: UnitLaw, ratio: float
+    network: Network,
+    couplers: Sequence[CouplerSize],
+    biases: Sequence[BiasSize],
+    law: UnitLaw,
+    ratio: float,
+    steps: float = 0.0,
 ) -> dict[str, float]:
     """The same with couplers drawn stiffer for carriers that are rigid, or ``ratio`` times as stiff as they: the more.
 
     Over a carrier of K a coupler is drawn 1 / (1 - s / K) times as stiff, to half a step. With that its source gets
     what it was sized for, but the target of a rocker more: s f - c^2 f^2 / (K + f s), and its c is less than its s.
+    ``steps`` are added to that.
     """
     total = {mass.name: 0.0 for mass in network.masses}
     for coupling, coupler in zip(network.couplings, couplers, strict=True):
         leaf = coupler.leaf
         rows = []
         for carrier, ideal in ((RIGID_CARRIER, 1.0), (ratio * leaf.own, 1.0 / (1.0 - 1.0 / ratio))):
-            factor = ideal + COUPLER_STEP / 2.0
+            factor = ideal + (0.5 + steps) * COUPLER_STEP
             rows.append(in_row(factor * leaf.own, factor * leaf.coupling, factor * leaf.own, carrier))
         total[coupling.source] += max(row.source for row in rows) / law.stiffness_unit
         total[coupling.target] += max(row.target for row in rows) / law.stiffness_unit

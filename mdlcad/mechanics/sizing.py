@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 from statistics import median_low
 
 from mdlcad.errors import UsageError
-from mdlcad.mechanics.findings import Finding, findings_of
+from mdlcad.mechanics.findings import Finding, findings_of, most_preload
 from mdlcad.mechanics.leaves import LeafKind, LeafSize, bias_offset, eye_radius, size_leaf, trim
-from mdlcad.mechanics.preload import compensator, most_self_terms, room_for, self_terms
+from mdlcad.mechanics.preload import TILT_STEPS, compensator, most_self_terms, room_for, self_terms
 from mdlcad.mechanics.process import PlateRole, Process
 from mdlcad.mechanics.rules import LayoutRules
 from mdlcad.mechanics.series import SeriesSpring, series_spring
@@ -61,11 +61,16 @@ def size(network: Network, process: Process, peak: Mapping[str, float]) -> Sizin
     solver = compensator(network, process, law, series, peak, absorbed)
     try:
         preloads, softest = solver.preloads(absorbed), solver.preloads(softened)
-        most = solver.preloads(most_self_terms(network, couplers, biases, law, process.link.carrier_ratio))
+        most, more = (
+            solver.preloads(most_self_terms(network, couplers, biases, law, process.link.carrier_ratio, steps))
+            for steps in (0.0, TILT_STEPS)
+        )
     except ArithmeticError as error:
         raise UsageError(f"process {process.name}: unit: {error}") from error
     strains = unit_strains(network, process, law, series, preloads, peak)
     series = replace(series, strain=trim(strains.peak), strain_settled=trim(strains.settled))
+    # hundredths of a micrometre less, for room is rounded up
+    pushed = most_preload(network, process, law, series) - 1e-4
     units = tuple(
         UnitSize(
             mass=mass.name,
@@ -73,7 +78,7 @@ def size(network: Network, process: Process, peak: Mapping[str, float]) -> Sizin
             compensation_network=mass.compensation,
             compensation=trim(0.0 - absorbed[mass.name]),
             preload=preloads[mass.name],
-            room=room_for(softest[mass.name], most[mass.name]),
+            room=room_for(softest[mass.name], max(most[mass.name], min(more[mass.name], pushed))),
             amplitude=process.unit.throw_unit * peak[mass.name],
             strain=trim(strains.beams[mass.name]),
         )

@@ -14,6 +14,7 @@ import numpy as np
 from mdlcad.mechanics.decks import Deck, deck_of_plate, plate_in
 from mdlcad.mechanics.flexure import RIGID, Sheet
 from mdlcad.mechanics.frame import TURN, Beam, Frame, Spring, Tie, X, Y, dof
+from mdlcad.mechanics.lean import Lifts
 from mdlcad.mechanics.leaves import LeafKind, trim
 from mdlcad.mechanics.process import Plate, PlateRole, Process
 from mdlcad.mechanics.rules import LayoutRules
@@ -148,6 +149,25 @@ def carrier_stiffnesses(
         )
         for (coupling, stiffness, own), lean in sums
     )
+
+
+def lifts_of(placement: Placement, layout: Layout, process: Process) -> Lifts:
+    """How high every coupler and bias leaf of a layout lies above the unit plates that it pulls at.
+
+    Args:
+        process: with the plates of both decks, if the device has two.
+    """
+    hubs = {place.mass: place for place in placement.masses}
+
+    def above(mass: str, plate: str) -> float:
+        unit, own = _unit_plate(process, hubs[mass]), process.plate(plate)
+        return trim(process.z_of(plate) + own.thickness / 2.0 - process.z_of(unit.name) - unit.thickness / 2.0)
+
+    couplings = {}
+    for leaf in layout.couplers:
+        source, _, target = leaf.coupling.rpartition("->")
+        couplings[leaf.coupling] = (above(source, leaf.plate), above(target, leaf.plate))
+    return Lifts(couplings, {bias.mass: above(bias.mass, bias.plate) for bias in layout.biases})
 
 
 def _tilts(

@@ -29,6 +29,7 @@ class Comparison:
         wrong: int[L], first wrong decision of each lane, D if there is none.
         margin, margin_mass: smallest |x| at a read-out and its mass.
         peak: float[n], largest |x| of each mass.
+        tilt: float[n], largest angle of its shuttle, rad, if nothing stopped it.
     """
 
     registers: tuple[tuple[str, int], ...]
@@ -39,6 +40,7 @@ class Comparison:
     margin: float
     margin_mass: str
     peak: Floats
+    tilt: Floats
 
 
 def compare(
@@ -106,6 +108,7 @@ def compare(
         margin=float(distance[weakest]) if len(distance) else 0.0,
         margin_mass=system.names[masses[weakest]] if len(distance) else "",
         peak=peak,
+        tilt=np.nan_to_num(run.tilt, nan=np.finfo(float).max).max(axis=1),
     )
 
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from msgspec import UNSET, UnsetType
+
 
 @dataclass(frozen=True, slots=True)
 class Mismatch:
@@ -49,6 +51,7 @@ class Proof:
         margin, margin_mass: smallest |x| at any read-out, and of which mass.
         peaks: largest |x| over all lanes and all time, by mass.
         method: the same in words.
+        tilts: largest angle about x of every shuttle, rad, if nothing stopped it; where they are not held from tilting.
     """
 
     design: str
@@ -72,6 +75,7 @@ class Proof:
     margin_mass: str
     peaks: dict[str, float]
     method: str
+    tilts: dict[str, float] | UnsetType = UNSET
 
     @property
     def holds(self) -> bool:

@@ -8,6 +8,7 @@ every decision: state before, outputs, state after, and that the tick comes exac
 from __future__ import annotations
 
 import numpy as np
+from msgspec import UNSET, UnsetType
 from numpy.typing import NDArray
 
 from mdlcad.errors import UsageError
@@ -57,6 +58,7 @@ def prove(
     tick_cycle = -1
     first: tuple[Mismatch, ...] = ()
     margin, margin_mass, peaks = 0.0, "", dict[str, float]()
+    tilts: dict[str, float] | UnsetType = UNSET
     try:
         timing = find_timing(network, system, steps_per_period)
         comparison = compare(
@@ -80,6 +82,8 @@ def prove(
         mismatches, simulated, tick_cycle = len(bad), length * lanes, timing.tick_cycle
         margin, margin_mass = comparison.margin, comparison.margin_mass
         peaks = dict(zip(system.names, map(float, comparison.peak), strict=True))
+        if system.devices is not None and system.devices.tilts is not None:
+            tilts = dict(zip(system.names, map(float, comparison.tilt), strict=True))
 
     unmapped = sorted(set(reference.states) - {register.bit for register in network.registers})
     method = f"{itinerary.method}; time simulation from power-up, then random inputs to the end of every lane"
@@ -107,6 +111,7 @@ def prove(
         margin_mass=margin_mass,
         peaks=peaks,
         method=method,
+        tilts=tilts,
     )
 
 

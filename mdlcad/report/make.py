@@ -8,10 +8,12 @@ from pathlib import Path
 from mdlcad.artefact import checksum
 from mdlcad.mechanics import Sizing
 from mdlcad.mechanics.compensation import Compensation
+from mdlcad.mechanics.leaves import trim
 from mdlcad.parts.body import Body
 from mdlcad.parts.stiffness import CarrierStiffness
 from mdlcad.proof.outcome import Proof
-from mdlcad.report.report import Behaviour, Mechanics
+from mdlcad.report.report import Behaviour, Mechanics, TiltReport
+from mdlcad.signoff.tilting import TiltingProof
 
 PAGE = "report.html"
 """The report for people. It shows how long the stages took, so it has no hash among the files, like report.json."""
@@ -43,6 +45,21 @@ def mechanics_of(
         ),
         compensation_left=None if compensation is None else _left(compensation),
         lean_worst=max((item.leaned for item in carriers), default=None),
+    )
+
+
+def tilts_of(found: TiltingProof | None) -> TiltReport | None:
+    """The figures of the proof with tilting shuttles."""
+    if found is None or not found.shuttles:
+        return None
+    worst = max(found.shuttles, key=lambda item: (item.largest, item.mass))
+    return TiltReport(
+        largest_rad=worst.largest,
+        mass=worst.mass,
+        stopped=sum(item.stopped for item in found.shuttles),
+        shuttles=len(found.shuttles),
+        friction_most=max(item.rub for item in found.shuttles),
+        friction_mean=trim(sum(item.rub for item in found.shuttles) / len(found.shuttles)),
     )
 
 

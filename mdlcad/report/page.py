@@ -145,8 +145,6 @@ def verdict_of(report: Report) -> Verdict:
         more += (f"{warned} warning{'s' if warned > 1 else ''} of the design rules, see below",)
     if report.margins is not None and not report.margins.machine_holds:
         more += (f"as drawn it works, but fabrication may spoil it: {report.margins.words()}",)
-    if report.tilting is not None and report.tilting.mismatches:
-        more += ("it works only as far as plates hold its shuttles: tilting freely, it decides wrongly (see Margins)",)
     return Verdict("good", "All of it holds", more)
 
 

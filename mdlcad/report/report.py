@@ -57,6 +57,24 @@ class Mechanics:
     lean_worst: float | None = None
 
 
+@dataclass(frozen=True, slots=True)
+class TiltReport:
+    """How far shuttles tilt in the proof ``tilting``.
+
+    Attributes:
+        largest_rad, mass: the largest angle about x that any would have if no plate stopped it, and whose.
+        stopped: shuttles that surely meet a plate; of shuttles.
+        friction_most: bound of what plates can brake a shuttle with, in F0; friction_mean: of all shuttles.
+    """
+
+    largest_rad: float
+    mass: str
+    stopped: int
+    shuttles: int
+    friction_most: float
+    friction_mean: float
+
+
 class Origin(StrEnum):
     """Where a stage's result is from: made in this build, kept from the build before it in its place (the same bytes,
     since nothing it depends on has changed), or loaded from the folder that ``--from`` starts at."""
@@ -174,6 +192,7 @@ class Report:
     files: dict[str, str]
     # later than the first reports, which can still be read
     tilting: Behaviour | None = None
+    tilts: TiltReport | None = None
     stopped: Stopped | None = None
     failures: tuple[str, ...] = ()
     bom: Bom | None = None

@@ -163,9 +163,16 @@ def margin_rows(
     rows += _fabrication_rows(report.margins)
     if report.tilting is not None:
         found = report.tilting
-        about = "transitions right of those checked, as drawn, if no plate holds the shuttles from tilting"
+        about = "transitions right of those checked, as drawn, shuttles tilting until they meet a plate"
+        tilts = report.tilts
+        if tilts is not None:
+            about += (
+                f": by {tilts.largest_rad:.3f} rad at the most ({tilts.mass}); {tilts.stopped} of {tilts.shuttles} "
+                f"meet one; plates brake them with up to {tilts.friction_most:.2f} F0, "
+                f"{tilts.friction_mean:.2f} on average"
+            )
         right = f"{found.transitions_checked - found.mismatches} of {found.transitions_checked}"
-        rows.append(Margin("tilting freely", right, "", about, found.mismatches == 0))
+        rows.append(Margin("tilting", right, "all", about, found.mismatches == 0))
     mechanics = report.mechanics
     if mechanics is None or process is None or sizing is None:
         return rows
@@ -181,7 +188,7 @@ def margin_rows(
         about = "the softest carrier over the coupler that it drives"
         rows.append(Margin("carrier", f"{ratio:.1f} times", f"at least {least:g} times", about, ratio >= least))
     if mechanics.lean_worst is not None:
-        about = "most of a coupling that its two shuttles take by tilting freely, if no plate holds them"
+        about = "most of a coupling that its two shuttles would take by tilting freely, if no plate held them"
         rows.append(Margin("lean", f"{100 * mechanics.lean_worst:.0f} %", "", about, None))
     about = (
         "largest change, in units of k, that the parts as built make to a unit's compensation; it is in the preloads"

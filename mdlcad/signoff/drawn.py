@@ -10,7 +10,7 @@ from shapely import Polygon
 
 from mdlcad.errors import SignoffError
 from mdlcad.mechanics.flexure import Sheet
-from mdlcad.mechanics.leaves import LeafKind
+from mdlcad.mechanics.leaves import LeafKind, trim
 from mdlcad.mechanics.process import Plate, PlateRole, Process
 from mdlcad.signoff.lvs import Recovered
 from mdlcad.signoff.measure import LeafSeen, UnitSeen, measure_leaf, measure_unit
@@ -21,13 +21,17 @@ _GRAVITY = 9.81
 
 @dataclass(frozen=True, slots=True)
 class CouplerDrawn:
-    """A coupler or rocker: whom it joins, what it is, its outline's dimensions and its sheet."""
+    """A coupler or rocker: whom it joins, what it is, its outline's dimensions and its sheet.
+
+    ``lifts``: how far it lies above the middles of the source's and the target's shuttle, mm.
+    """
 
     source: str
     target: str
     kind: LeafKind
     leaf: LeafSeen
     sheet: Sheet
+    lifts: tuple[float, float]
 
     @property
     def name(self) -> str:
@@ -37,12 +41,13 @@ class CouplerDrawn:
 
 @dataclass(frozen=True, slots=True)
 class BiasDrawn:
-    """A bias leaf, and how far its post stands above the row, mm."""
+    """A bias leaf, how far its post stands above the row and it itself above the shuttle's middle, mm."""
 
     mass: str
     leaf: LeafSeen
     offset: float
     sheet: Sheet
+    lift: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +57,7 @@ class Drawn:
     Attributes:
         units: by mass; unit_sheet: what they are cut from.
         weights: by mass, of all that moves with its shuttle, N.
+        tabs: by mass, how far its tab lies above its shuttle's middle, mm.
         post_radius: of the posts that rockers and bias leaves turn on, mm.
     """
 
@@ -60,6 +66,7 @@ class Drawn:
     couplers: tuple[CouplerDrawn, ...]
     biases: tuple[BiasDrawn, ...]
     weights: dict[str, float]
+    tabs: dict[str, float]
     post_radius: float
 
 
@@ -86,7 +93,8 @@ def measure_device(
         post = None if item.post is None else bodies[item.post].section.centroid.x
         leaf = measure_leaf(body.name, body.section, units[item.target].x, post)
         kind = LeafKind.ROCKER if item.negative else LeafKind.COUPLER
-        couplers.append(CouplerDrawn(item.source, item.target, kind, leaf, _sheet(body, process)))
+        lifts = tuple(trim(_middle(body) - _middle(bodies[f"unit.{mass}"])) for mass in (item.source, item.target))
+        couplers.append(CouplerDrawn(item.source, item.target, kind, leaf, _sheet(body, process), (lifts[0], lifts[1])))
     biases = []
     for bias in recovered.biases:
         if bias.body not in cut:
@@ -94,15 +102,26 @@ def measure_device(
         post_at = bodies[bias.post].section.centroid
         leaf = measure_leaf(bias.body, cut[bias.body], units[bias.mass].x, post_at.x)
         offset = post_at.y - units[bias.mass].y
-        biases.append(BiasDrawn(bias.mass, leaf, offset, _sheet(bodies[bias.body], process)))
+        lift = trim(_middle(bodies[bias.body]) - _middle(bodies[f"unit.{bias.mass}"]))
+        biases.append(BiasDrawn(bias.mass, leaf, offset, _sheet(bodies[bias.body], process), lift))
     weights = {
         mass: sum(_weight(bodies[name], process) for name in (f"unit.{mass}", *recovered.carriers.get(mass, ())))
         for mass in recovered.units
     }
+    tabs = {
+        mass: trim(_middle(bodies[name]) - _middle(bodies[f"unit.{mass}"]))
+        for mass in recovered.units
+        for name in recovered.carriers.get(mass, ())
+        if name.startswith("tab.")
+    }
     pivots = [item.post for item in recovered.connections] + [item.post for item in recovered.biases]
     posts = [bodies[name].section for name in pivots if name is not None]
     radius = max((math.sqrt(post.area / math.pi) for post in posts), default=0.0)
-    return Drawn(units, next(iter(sheets.values())), tuple(couplers), tuple(biases), weights, radius)
+    return Drawn(units, next(iter(sheets.values())), tuple(couplers), tuple(biases), weights, tabs, radius)
+
+
+def _middle(body: ReadBody) -> float:
+    return body.z + body.thickness / 2.0
 
 
 def _plate(body: ReadBody, process: Process) -> Plate:

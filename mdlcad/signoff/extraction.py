@@ -9,9 +9,8 @@ Errors of fabrication go the same way: the numbers are tabulated over a wall tha
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import astuple, dataclass, replace
-from enum import StrEnum
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,8 +39,11 @@ from mdlcad.signoff.numbers import (
     spring_numbers,
     unit_numbers,
 )
+from mdlcad.signoff.stops import Stop
+from mdlcad.signoff.tilting import rubbing
 from mdlcad.simulation.devices import Devices
 from mdlcad.simulation.system import System, system_of
+from mdlcad.simulation.tilting import Tilts
 
 Floats = NDArray[np.float64]
 
@@ -107,17 +109,6 @@ class BuiltDevice:
     couplers: tuple[CouplerBuilt, ...]
 
 
-TILTING = "tilting.json"
-"""Artefact of the proof of a device whose shuttles tilt freely."""
-
-
-class Tilting(StrEnum):
-    """Whether plates hold shuttles from tilting about x, or nothing does; what they truly do is between the two."""
-
-    HELD = "held"
-    FREE = "free"
-
-
 class Built:
     """A device as drawn, and its like with errors.
 
@@ -135,9 +126,11 @@ class Built:
         carriers: Sequence[CarrierStiffness],
         process: Process,
         grid: Sequence[float] = (0.0,),
-        tilting: Tilting = Tilting.HELD,
+        stops: Mapping[str, Stop] | None = None,
     ) -> None:
         """Evaluate ``drawn``; ``grid``: errors of walls (mm) at which it is tabulated for ``devices``.
+
+        Shuttles are held from tilting, or tilt until they meet their ``stops``.
 
         Raises:
             SignoffError: the geometry lacks a unit, or a flexure finds no equilibrium at its farthest.
@@ -154,8 +147,8 @@ class Built:
         missing = sorted(set(self._names) - set(drawn.units))
         if missing:
             raise SignoffError(f"the geometry has no units for {', '.join(missing)}")
-        free = tilting is Tilting.FREE
-        self._stiff = {item.coupling: trim(item.leaning) if free else item.stiffness for item in carriers}
+        self._stiff = {item.coupling: item.stiffness for item in carriers}
+        self._stops, self._shuttle_tilt, self._rubbing = stops, sizing.law.shuttle_tilt, rubbing(process, sizing.law)
         try:
             self._units = self._unit_tables()
             self._couplers = self._coupler_tables()
@@ -338,7 +331,29 @@ class Built:
             masses[4, at] += cubic
             masses[3, at] += quartic
         springs = entries[:, self._entries]
-        return Devices(*masses, *springs)
+        devices = Devices(*masses, *springs)
+        return devices if self._stops is None else replace(devices, tilts=self._tilts(self._stops))
+
+    def _tilts(self, stops: Mapping[str, Stop]) -> Tilts:
+        """How the shuttles of the device as drawn tilt; its errors do not change that."""
+        place, length = {name: index for index, name in enumerate(self._structure.names)}, self._scale.length
+        masses, none = np.zeros((7, len(place))), np.zeros(1)  # K, stops, height and stiffness of the bias, tab, rub
+        masses[0] = self._shuttle_tilt / (self._scale.stiffness * length**2)
+        for name, at in place.items():
+            masses[1:3, at] = stops[name].low, stops[name].high
+            masses[5, at] = self._drawn.tabs.get(name, 0.0) / length
+        masses[6] = self._rubbing
+        for leaf, table in zip(self._drawn.biases, self._biases, strict=True):
+            masses[3:5, place[leaf.mass]] = leaf.lift / length, _at(table, none)[1, 0]
+        entries = np.zeros((3, len(self._entries)))
+        owners = np.repeat(np.arange(len(place)), np.diff(self._structure.row_start))
+        for entry, (index, owner) in enumerate(zip(self._entries, owners, strict=True)):
+            item = self._drawn.couplers[index]
+            _, source, target, *_ = _at(self._couplers[index], none)[:, 0]
+            low, high = (lift / length for lift in item.lifts)
+            ends = (low, high, source) if place[item.source] == owner else (high, low, target)
+            entries[:, entry] = ends
+        return Tilts(*masses, *entries)
 
     def _friction(self) -> dict[str, Bound]:
         """Bound of dry friction (Coulomb) over x, by mass, in units of F0.

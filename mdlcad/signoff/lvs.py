@@ -131,9 +131,10 @@ def recover(bodies: Sequence[ReadBody]) -> Recovered:
     units = tuple(
         sorted(body.name.removeprefix("unit.") for body, kind in zip(bodies, kinds, strict=True) if kind == "unit")
     )
+    # the pins of a hub's two sides are joined by the shuttle alone: one mass may carry two groups
     carried = {
-        mass: tuple(sorted(bodies[index].name for index, part in group.items() if part == number))
-        for number, mass in shuttle.items()
+        mass: tuple(sorted(bodies[index].name for index, part in group.items() if shuttle.get(part) == mass))
+        for mass in shuttle.values()
     }
     return Recovered(units, tuple(connections), tuple(biases), tuple(problems), carried)
 

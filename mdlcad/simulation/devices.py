@@ -21,10 +21,9 @@ from numpy.typing import NDArray
 
 from mdlcad.compiled import kernel
 from mdlcad.simulation.schedule import due_steps, interval_at
+from mdlcad.simulation.tilting import BLOCK, Tilts, settle
 
 Floats = NDArray[np.float64]
-
-BLOCK = 8
 
 CREEP = 0.05
 """Speed at which friction is half of its bound; masses that switch move at 1 and more."""
@@ -39,6 +38,7 @@ class Devices:
         friction, friction_slope, friction_curve: float[n, L]: f, f', f''.
         strength, apart, together, skew: float[e, L]: c, Q, C, B of each entry (two a spring).
         rub: float[e, L]: R of each entry.
+        tilts: how their shuttles tilt, None if they are held from it.
     """
 
     base: Floats
@@ -54,6 +54,7 @@ class Devices:
     together: Floats
     skew: Floats
     rub: Floats
+    tilts: Tilts | None = None
 
     @property
     def count(self) -> int:
@@ -93,25 +94,35 @@ def pushes(
     column: Any,
     force: Any,
     damping: float,
+    angle: Any,
+    tip: Any,
+    tilting: Any,
+    lifts: Any,
 ) -> None:
     """Write m x'' of every mass to ``out`` (float[n, BLOCK]); ``wave`` is p of every phase, ``force`` from outside."""
     base, swing, bias, quartic, cubic, friction, friction_slope, friction_curve = masses
     strength, apart, together, skew, rub = springs
+    leaf, leaf_stiffness, pressing = tilting[3], tilting[4], tilting[6]
+    own, other, self_stiffness = lifts
     for i in range(x.shape[0]):
         p = wave[phase[i]]
+        lifted = leaf[i] * leaf_stiffness[i]
         for lane in range(BLOCK):
             y = x[i, lane]
             stiff = base[i, lane] + swing[i, lane] * p + (cubic[i, lane] + quartic[i, lane] * y) * y
             bound = friction[i, lane] + (friction_slope[i, lane] + friction_curve[i, lane] * y) * y
-            drag = damping + max(bound, 0.0) / (abs(v[i, lane]) + CREEP)
-            out[i, lane] = force[i, lane] - bias[i, lane] - drag * v[i, lane] - stiff * y
+            bound = max(bound, 0.0) + pressing[i] * tip[i, lane] * tip[i, lane]
+            drag = damping + bound / (abs(v[i, lane]) + CREEP)
+            out[i, lane] = force[i, lane] - bias[i, lane] - drag * v[i, lane] - stiff * y - lifted * angle[i, lane]
         for e in range(row_start[i], row_start[i + 1]):
-            j = column[e]
+            j, h, g, s = column[e], own[e], other[e], self_stiffness[e]
             for lane in range(BLOCK):
-                difference = x[i, lane] - x[j, lane]
-                total = x[i, lane] + x[j, lane]
+                up = h * angle[i, lane]
+                y, z = x[i, lane] + up, x[j, lane] + g * angle[j, lane]
+                difference, total = y - z, y + z
                 out[i, lane] += (
-                    strength[e, lane] * x[j, lane]
+                    strength[e, lane] * z
+                    - s * up
                     - apart[e, lane] * difference * difference * difference
                     - together[e, lane] * total * total * total
                     - skew[e, lane] * difference * (difference + 2.0 * total)
@@ -149,12 +160,17 @@ def advance_devices(
     readings: Any,
     stride: int,
     trace: Any,
+    tilt: Any,
+    tilts: bool,
+    tilting: Any,
+    lifts: Any,
 ) -> None:
     """Advance lanes lane0 .. lane0 + BLOCK of x, v (float[n, lanes]) by ``steps`` steps of length ``h``, in place.
 
     ``wave`` is float[2 * steps a period, phases], p at every half step; ``force`` float[intervals, driven, lanes];
     ``readings`` float[cycles, watched, lanes]; ``trace`` float[frames, n, lanes], written every ``stride`` steps
-    (0: never).
+    (0: never). If shuttles tilt (``tilts``), ``tilt`` is float[n, lanes], the largest angle of
+    each, were there no stops.
     """
     n = x.shape[0]
     points = wave.shape[0]
@@ -162,7 +178,8 @@ def advance_devices(
     y, u = np.empty((n, BLOCK)), np.empty((n, BLOCK))
     stage_y, stage_u = np.empty((n, BLOCK)), np.empty((n, BLOCK))
     sum_y, sum_u = np.empty((n, BLOCK)), np.empty((n, BLOCK))
-    push, outside = np.empty((n, BLOCK)), np.zeros((n, BLOCK))
+    push, outside, angle = np.empty((n, BLOCK)), np.zeros((n, BLOCK)), np.zeros((n, BLOCK))
+    tip = np.zeros((n, BLOCK))
     for i in range(n):
         for lane in range(BLOCK):
             y[i, lane] = x[i, lane0 + lane]
@@ -190,10 +207,34 @@ def advance_devices(
             for s in range(driven.shape[0]):
                 for lane in range(BLOCK):
                     outside[driven[s], lane] = force[span, s, lane0 + lane]
+        if tilts:
+            for i in range(n):
+                for lane in range(BLOCK):
+                    stage_y[i, lane] = y[i, lane] + 0.5 * h * u[i, lane]
+            settle(angle, tip, stage_y, masses[2], springs, tilting, lifts, row_start, column, outside)
+            for i in range(n):
+                for lane in range(BLOCK):
+                    tilt[i, lane0 + lane] = max(tilt[i, lane0 + lane], abs(tip[i, lane]))
         for stage in range(4):
             at = 2 * within + (stage + 1) // 2
             if stage == 0:
-                pushes(push, y, u, wave[at % points], phase, masses, springs, row_start, column, outside, damping)
+                pushes(
+                    push,
+                    y,
+                    u,
+                    wave[at % points],
+                    phase,
+                    masses,
+                    springs,
+                    row_start,
+                    column,
+                    outside,
+                    damping,
+                    angle,
+                    tip,
+                    tilting,
+                    lifts,
+                )
             else:
                 pushes(
                     push,
@@ -207,6 +248,10 @@ def advance_devices(
                     column,
                     outside,
                     damping,
+                    angle,
+                    tip,
+                    tilting,
+                    lifts,
                 )
             share = 1.0 if stage == 0 or stage == 3 else 2.0
             ahead = h if stage == 2 else 0.5 * h

@@ -13,6 +13,7 @@ from mdlcad.simulation.kernel_lanes import BLOCK, advance_block
 from mdlcad.simulation.kernel_single import advance_one
 from mdlcad.simulation.plan import plan_of, turn_table
 from mdlcad.simulation.system import Floats, Ints, System, wave_table
+from mdlcad.simulation.tilting import held
 
 STEPS_PER_PERIOD = 400
 
@@ -61,6 +62,7 @@ class Run:
         trace: float[frames, n, L], displacements at steps 0, stride, 2 stride ... (no frames without a stride).
         peak: float[n, L], largest |x| at any time step.
         x, v: float[n, L], the final state.
+        tilt: float[n, L], largest angle of each shuttle, rad, if nothing stopped it; 0 where they are held.
     """
 
     readings: Floats
@@ -68,6 +70,7 @@ class Run:
     peak: Floats
     x: Floats
     v: Floats
+    tilt: Floats
 
 
 def steps_for(system: System) -> int:
@@ -120,6 +123,7 @@ def simulate(
     x = np.ascontiguousarray(np.repeat(system.initial[:, None], padded, axis=1))
     v = np.zeros((n, padded))
     peak = np.zeros((n, padded))
+    tilt = np.zeros((n, padded))
     readings = np.full((-(-steps // steps_per_period), len(watch.masses), padded), np.nan)
     trace = np.zeros((steps // trace_stride + 1 if trace_stride else 0, n, padded))
     turn = turn_table(2 * steps_per_period)
@@ -132,6 +136,8 @@ def simulate(
         start, width = block
         if system.devices is not None:
             masses, springs = system.devices.block(start)
+            tilts = system.devices.tilts
+            tilting, lifts = (tilts or held(n, len(system.column))).numbers()
             advance_devices(
                 start,
                 x,
@@ -156,6 +162,10 @@ def simulate(
                 readings,
                 trace_stride,
                 trace,
+                tilt,
+                tilts is not None,
+                tilting,
+                lifts,
             )
             return
         kernel = advance_one if width == 1 else advance_block
@@ -185,7 +195,9 @@ def simulate(
     else:
         for block in blocks:
             advance(block)
-    return Run(readings[:, :, :lanes], trace[:, :, :lanes], peak[:, :lanes], x[:, :lanes], v[:, :lanes])
+    return Run(
+        readings[:, :, :lanes], trace[:, :, :lanes], peak[:, :lanes], x[:, :lanes], v[:, :lanes], tilt[:, :lanes]
+    )
 
 
 def _blocks(lanes: int, masses: int) -> list[tuple[int, int]]:

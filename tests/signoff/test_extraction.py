@@ -13,14 +13,16 @@ from mdlcad.mechanics.compensation import compensate
 from mdlcad.mechanics.fit import Scale
 from mdlcad.mechanics.flexure import signal_matrix
 from mdlcad.mechanics.leaves import LargeLeaf, LeafKind, chain_of, rung_sheet
-from mdlcad.parts.body import Body
-from mdlcad.parts.stiffness import carrier_stiffnesses
+from mdlcad.parts.body import Body, BodyKind
+from mdlcad.parts.stiffness import carrier_stiffnesses, lifts_of
 from mdlcad.signoff.drawn import Drawn, measure_device
-from mdlcad.signoff.extraction import Built, Tilting
+from mdlcad.signoff.extraction import Built
 from mdlcad.signoff.lvs import compare, recover
 from mdlcad.signoff.measure import chain_of_leaf, measure_leaf, measure_unit, spans_at_x
 from mdlcad.signoff.numbers import bias_numbers
 from mdlcad.signoff.readback import ReadBody, read_step
+from mdlcad.signoff.stops import stops_of
+from mdlcad.signoff.tilting import rubbing
 from tests.parts.device import Device
 
 
@@ -120,14 +122,34 @@ def test_preloads_that_know_the_carriers_leave_nothing_in_the_middle(device: Dev
         )
 
 
-def test_shuttles_that_tilt_freely_take_their_lean_from_every_coupling(device: Device, built: Built) -> None:
-    carriers = carrier_stiffnesses(device.network, device.placement, device.layout, device.sizing, device.process)
-    loose = Built(drawn_of(built), device.network, device.sizing, carriers, device.process, tilting=Tilting.FREE)
-    left = {item.coupling: 1.0 - item.leaned for item in carriers}
-    held = {item.name: item.strength for item in built.network.couplings}
-    assert min(left.values()) < 0.97
-    for item in loose.network.couplings:
-        assert item.strength / held[item.name] == pytest.approx(left[item.name], abs=0.01)
+def test_shuttles_that_tilt_have_heights_and_stops_as_drawn(device: Device, built: Built, files) -> None:
+    drawn, process = drawn_of(built), device.process
+    recovered = recover(files[0])
+    stops = stops_of(files[0], recovered, drawn.units, process, device.sizing.rules)
+    carriers = carrier_stiffnesses(device.network, device.placement, device.layout, device.sizing, process)
+    loose = Built(drawn, device.network, device.sizing, carriers, process, stops=stops)
+    assert built.system.devices is not None and loose.system.devices is not None
+    assert built.system.devices.tilts is None
+    tilts = loose.system.devices.tilts
+    assert tilts is not None
+    # what layout says of heights, the files' bodies say too
+    lifts = lifts_of(device.placement, device.layout, process)
+    for item in drawn.couplers:
+        assert item.lifts == pytest.approx(lifts.couplings[item.name])
+    assert {item.mass: item.lift for item in drawn.biases} == pytest.approx(dict(lifts.biases))
+    names, x0 = loose.system.names, process.unit.throw_unit
+    assert np.abs(tilts.own).max() == pytest.approx(max(max(map(abs, pair)) for pair in lifts.couplings.values()) / x0)
+    assert list(tilts.high) == [stops[name].high for name in names]
+    # the larger the gaps, the farther a shuttle can tilt
+    wide = replace(process, stack=replace(process.stack, z_gap=2.0 * process.stack.z_gap))
+    assert rubbing(wide, device.sizing.law) == pytest.approx(rubbing(process, device.sizing.law) / 2.0)
+
+
+def test_both_sides_of_a_hub_are_carried_by_its_shuttle(device: Device, files) -> None:
+    carried = recover(files[0]).carriers
+    for body in device.bodies():
+        if body.kind in (BodyKind.RUNG, BodyKind.TRUNK, BodyKind.TAB) and body.moves_with[0].startswith("mass:"):
+            assert body.name in carried[body.moves_with[0].removeprefix("mass:")]
 
 
 def test_the_quartic_is_kept(device: Device, built: Built) -> None:
