@@ -180,8 +180,8 @@ def _chosen(plan: tuple[Step, ...], first: str | None, last: str | None) -> tupl
         raise UsageError(f"--from {first} comes after --to {last}: nothing to do")
     for step in plan[:start]:
         if step.name not in _LOADED:
-            latest = [name for name in names if name in _LOADED][-1]
-            raise UsageError(f"--from {first}: a build can start again from any stage up to the one after {latest}")
+            latest = names[max(names.index(name) for name in names if name in _LOADED) + 1]
+            raise UsageError(f"--from {first}: starts too late; a build can start again from any stage up to {latest}")
     if first and not plan[start].makes:
         before = names[start - 1]
         raise UsageError(f"--from {first}: is made together with {before}; start from {before}, or after {first}")

@@ -52,6 +52,7 @@ def test_a_verilog_error_is_at_its_line_of_the_program(tmp_path, capsys):
         (["build", str(MAZE), "--to", "nonsense"], "no such stage"),
         (["build", str(MAZE), "--from", "layout", "--to", "device"], "nothing to do"),
         (["build", str(MAZE), "--from", "layout"], "is made together with placement"),
+        (["build", str(MAZE), "--from", "guide"], "a build can start again from any stage up to drive"),
         (["build", str(MAZE), "--process", "nonsense"], "pom_cut"),
         (["build", str(MAZE), "--cells", "nonsense"], "parametron"),
         (["verify", "nowhere"], "no such build folder"),
