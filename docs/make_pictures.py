@@ -6,19 +6,17 @@ shown in a browser; without one their two pictures stay as they are, and it says
 
 from __future__ import annotations
 
-import shutil
-import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
+from browser import BROWSER, browse
 from PIL import Image
 
 from mdlcad.cli import main as mdlcad
 
 IMAGES = Path(__file__).resolve().parent / "images"
 MOMENTS = ("0", "1.5", "3")
-BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 
 
 def main(maze: str, large: str, first: str, second: str) -> None:
@@ -28,21 +26,19 @@ def main(maze: str, large: str, first: str, second: str) -> None:
     look(maze, "view-find", "--find", "drive[1]", "--size", "1000x640")
     with tempfile.TemporaryDirectory() as folder:
         strip(maze, Path(folder))
-        browser = next((found for name in BROWSERS if (found := shutil.which(name))), None)
-        if browser is None:
+        if BROWSER is None:
             print("no browser is on this machine: view-page.png and diff.png stay as they were")
             return
         page = Path(folder) / "page.html"
         run("view", maze, "--html", str(page))
         shoot(
-            browser,
             f"{page.as_uri()}#colour=state&explode=0.25&plates=clock-0,unit,V,H0,H1&at=1.9",
             "view-page",
             "1200,760",
             Path(folder),
         )
         run("diff", first, second, "--html", str(page))
-        shoot(browser, page.as_uri(), "diff", "1400,920", Path(folder))
+        shoot(page.as_uri(), "diff", "1400,920", Path(folder))
 
 
 def run(*arguments: str) -> None:
@@ -70,12 +66,9 @@ def strip(maze: str, folder: Path) -> None:
     whole.save(IMAGES / "view-run.png", optimize=True)
 
 
-def shoot(browser: str, address: str, name: str, size: str, folder: Path) -> None:
+def shoot(address: str, name: str, size: str, folder: Path) -> None:
     """A page as a browser without a network shows it."""
-    options = ["--headless", "--no-sandbox", "--disable-gpu", "--enable-unsafe-swiftshader", "--no-first-run"]
-    options += ["--hide-scrollbars", "--host-resolver-rules=MAP * ~NOTFOUND", f"--user-data-dir={folder / 'profile'}"]
-    options += [f"--window-size={size}", "--virtual-time-budget=6000", f"--screenshot={IMAGES / f'{name}.png'}"]
-    subprocess.run([browser, *options, address], check=True, timeout=240, capture_output=True)
+    browse(folder, size, f"--screenshot={IMAGES / f'{name}.png'}", address)
 
 
 if __name__ == "__main__":

@@ -3,7 +3,6 @@
 import base64
 import json
 import re
-import shutil
 import subprocess
 import sys
 import zlib
@@ -14,13 +13,13 @@ import numpy as np
 import pytest
 from PIL import Image
 
+import docs.browser
 from mdlcad.view.colours import ColourBy
 from mdlcad.view.page import page
 from mdlcad.view.scene import Look, Scene
 
-BROWSER = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 needs_browser = pytest.mark.skipif(
-    BROWSER is None, reason="NO BROWSER: chromium is not on this machine, so the page was not tried in one"
+    docs.browser.BROWSER is None, reason="NO BROWSER: chromium is not on this machine, so the page was not tried in one"
 )
 
 
@@ -96,27 +95,7 @@ def test_the_same_bytes_in_another_process(voter: Path, written: bytes, tmp_path
 
 def browse(folder: Path, *arguments: str) -> str:
     """Run the browser with no network; what it printed."""
-    done = subprocess.run(
-        [
-            str(BROWSER),
-            "--headless",
-            "--no-sandbox",
-            "--disable-gpu",
-            "--enable-unsafe-swiftshader",
-            "--no-first-run",
-            "--hide-scrollbars",
-            "--host-resolver-rules=MAP * ~NOTFOUND",
-            f"--user-data-dir={folder / 'profile'}",
-            "--window-size=1000,700",
-            "--virtual-time-budget=6000",
-            *arguments,
-        ],
-        capture_output=True,
-        text=True,
-        timeout=240,
-        check=True,
-    )
-    return done.stdout
+    return docs.browser.browse(folder, "1000,700", *arguments)
 
 
 # goes over the canvas with the mouse until a card says what is there
