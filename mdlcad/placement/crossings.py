@@ -55,8 +55,8 @@ def _window(p: Problem, at_column: Ints, side: Ints, mass: int, channel: int) ->
 
 
 @part
-def _hub(p: Problem, into: Ints, at_column: Ints, side: Ints, bias: Ints, mass: int) -> float:
-    """What mass ``mass`` costs where it and its neighbours stand."""
+def _hub(p: Problem, into: Ints, at_column: Ints, side: Ints, bias: Ints, mass: int) -> tuple[float, float]:
+    """What the hub of mass ``mass`` costs where it and its neighbours stand: for broken rules, and beyond."""
     at, plates = at_column[mass], int(p.sizes[2])
     items, posts, own = np.zeros(2, np.int32), np.zeros(2, np.int32), np.zeros(2, np.int32)  # left, right
     for i in range(p.mass[mass, 1], p.mass[mass + 1, 1]):
@@ -65,23 +65,24 @@ def _hub(p: Problem, into: Ints, at_column: Ints, side: Ints, bias: Ints, mass: 
         k = side[into[i]] if across == 0 else int(across > 0)
         items[k] += 1
         posts[k] += link[2]
-    cost = 0.0
+    broken, cost = 0.0, 0.0
     for i in range(p.mass[mass, 0], p.mass[mass + 1, 0]):
         link = p.coupling[p.outs[i]]
         across = at_column[link[1]] - at
-        cost += SPAN * max(0, abs(across) - link[3])
+        broken += SPAN * max(0, abs(across) - link[3])
         own[side[p.outs[i]] if across == 0 else int(across > 0)] = 1
     for tab in range(p.mass[mass, 2], p.mass[mass + 1, 2]):
         way = p.way[tab, at]
         if way[0] < 0:
-            cost += SPAN * way[2]
+            broken += SPAN * way[2]
         else:
             own[0 if way[0] == at else 1] = 1
             cost += PASSED * max(0, way[2] - way[1] + 1)
     for k in range(2):
         if own[k]:
             low, high = _window(p, at_column, side, mass, at + k)
-            cost += NARROW * max(0.0, 3 - (high - low) / p.sizes[1]) + HARD * (low > high + 1e-6)
+            broken += HARD * (low > high + 1e-6)
+            cost += NARROW * max(0.0, 3 - (high - low) / p.sizes[1])
     items += own
     if p.mass[mass, 3]:
         items[bias[mass]] += 1
@@ -90,7 +91,7 @@ def _hub(p: Problem, into: Ints, at_column: Ints, side: Ints, bias: Ints, mass: 
     right = EDGE if at == p.slot_at.shape[0] - 1 else plates
     over = max(0, items[0] - left) + max(0, items[1] - right) + max(0, posts[0] - 1) + max(0, posts[1] - 1)
     full = max(0, items[0] - left + 1) + max(0, items[1] - right + 1)
-    return float(cost + HARD * over + TRUNK * (np.sum(own) + full))
+    return float(broken + HARD * over), float(cost + TRUNK * (np.sum(own) + full))
 
 
 @part
@@ -152,8 +153,8 @@ def _orders(p: Problem, into: Ints, at_column: Ints, side: Ints, mass: int) -> f
 
 
 @part
-def _around(p: Problem, into: Ints, mass: int, found: Ints, far: bool) -> int:
-    """List ``mass`` and those it is coupled to, each once; if ``far``, also all that its sources drive."""
+def _around(p: Problem, into: Ints, mass: int, found: Ints) -> int:
+    """List ``mass`` and those it is coupled to, each once."""
     found[0], n = mass, 1
     outs = p.mass[mass + 1, 0] - p.mass[mass, 0]
     for i in range(outs + p.mass[mass + 1, 1] - p.mass[mass, 1]):
@@ -162,9 +163,6 @@ def _around(p: Problem, into: Ints, mass: int, found: Ints, far: bool) -> int:
         else:
             other = p.coupling[into[p.mass[mass, 1] + i - outs], 0]
         n = _note(found, n, other)
-        if far and i >= outs:
-            for j in range(p.mass[other, 0], p.mass[other + 1, 0]):
-                n = _note(found, n, p.coupling[p.outs[j], 1])
     return n
 
 
@@ -185,9 +183,20 @@ def _crowd(held: float, room: float) -> float:
 
 
 @inlined
-def _all(p: Problem, into: Ints, column: Ints, side: Ints, bias: Ints, mass: int, exact: bool) -> float:
-    cost = _hub(p, into, column, side, bias, mass)
-    return float(cost + _orders(p, into, column, side, mass)) if exact else float(cost)
+def _price(p: Problem, into: Ints, column: Ints, side: Ints, bias: Ints, mass: int) -> float:
+    broken, cost = _hub(p, into, column, side, bias, mass)
+    return float(broken + cost)
+
+
+@kernel
+def hub_costs(p: Problem, into: Ints, column: Ints, side: Ints, bias: Ints, hubs: Ints) -> Floats:
+    """(N, 2) what rules cost that each of ``hubs`` breaks by itself, and by orders; arguments as ``settle_columns``."""
+    costs = np.zeros((len(hubs), 2))
+    for i in range(len(hubs)):
+        mass = hubs[i]
+        costs[i, 0] = _hub(p, into, column, side, bias, mass)[0]
+        costs[i, 1] = _orders(p, into, column, side, mass)
+    return costs
 
 
 @kernel
@@ -200,21 +209,17 @@ def settle_columns(
     cell: Ints,
     room: Floats,
     slots: Ints,
-    among: Ints,
-    exact: bool,
-    hub: Floats,
     random: npt.NDArray[np.uint64],
     moves: int,
     hot: float,
     cold: float,
-) -> float:
-    """Anneal ``column``, ``side`` and ``bias`` of the masses ``among`` in place; the cost that is left.
+) -> None:
+    """Anneal ``column``, ``side`` and ``bias`` in place; orders of trunks do not count here.
 
     Args:
         into: couplings by target, as ``Problem.mass`` counts them. cell: by mass, the cell of rows that it stays in.
         side: by coupling, the channel (0 left, 1 right) that it takes within a column. bias: by mass, its leaf's side.
         room: (columns, cells) masses that a cell takes without crowding. slots: by column, how many it has.
-        exact: whether orders of trunks count, too. hub: by mass, set to what its hub costs.
     """
     found = np.zeros(MOST_NEIGHBOURS, np.int32)
     held, free = np.zeros(room.shape), slots.copy()
@@ -223,14 +228,14 @@ def settle_columns(
         free[column[mass]] -= 1
     for move in range(moves):
         heat = hot * (cold / hot) ** (move / moves)
-        mass = among[int(draw(random) * len(among))]
+        mass = int(draw(random) * len(column))
         old, new, turned, change, at = column[mass], column[mass], -1, 0.0, cell[mass]
         found[0], n = mass, 1
         kind = draw(random)
         if kind < TURNS / 2:
             if not p.mass[mass, 3]:
                 continue
-            change -= _all(p, into, column, side, bias, mass, exact)
+            change -= _price(p, into, column, side, bias, mass)
             bias[mass] = 1 - bias[mass]
         elif kind < TURNS:
             outs = p.mass[mass + 1, 0] - p.mass[mass, 0]
@@ -239,26 +244,22 @@ def settle_columns(
             turned = p.outs[p.mass[mass, 0] + int(draw(random) * outs)]
             if column[p.coupling[turned, 1]] != old:
                 continue
-            if exact:
-                for i in range(outs):
-                    n = _note(found, n, p.coupling[p.outs[p.mass[mass, 0] + i], 1])
-            else:
-                found[1], n = p.coupling[turned, 1], 2
+            found[1], n = p.coupling[turned, 1], 2
             for k in range(n):
-                change -= _all(p, into, column, side, bias, found[k], exact)
+                change -= _price(p, into, column, side, bias, found[k])
             side[turned] = 1 - side[turned]
         else:
             new = old + (1 if draw(random) < 0.5 else -1)
             if new < 0 or new >= len(room) or free[new] <= 0:
                 continue
-            n = _around(p, into, mass, found, exact)
+            n = _around(p, into, mass, found)
             change += _crowd(held[new, at] + 1, room[new, at]) - _crowd(held[new, at], room[new, at])
             change += _crowd(held[old, at] - 1, room[old, at]) - _crowd(held[old, at], room[old, at])
             for k in range(n):
-                change -= _all(p, into, column, side, bias, found[k], exact)
+                change -= _price(p, into, column, side, bias, found[k])
             column[mass] = new
         for k in range(n):
-            change += _all(p, into, column, side, bias, found[k], exact)
+            change += _price(p, into, column, side, bias, found[k])
         if change <= 0 or draw(random) < math.exp(-change / heat):
             held[old, at] -= 1
             held[new, at] += 1
@@ -270,6 +271,3 @@ def settle_columns(
             side[turned] = 1 - side[turned]
         else:
             bias[mass] = 1 - bias[mass]
-    for mass in range(len(column)):
-        hub[mass] = _all(p, into, column, side, bias, mass, exact)
-    return float(np.sum(hub) + CROWD * np.sum(np.maximum(0.0, held - room) ** 2))

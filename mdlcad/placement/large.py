@@ -57,7 +57,7 @@ def _attempt(problem: Problem, lattice: Lattice, seed: int, moves_per_mass: int)
     squares = _squares(lattice, masses)
     part = _only(problem, squares)
     begun = start_by_levels(part, replace(lattice, slots=tuple(lattice.slots[slot] for slot in squares.tolist())), seed)
-    state, source = careful(part, begun.slot, begun.side, begun.bias, seed, BAND)
+    state, source = careful(part, begun.slot, begun.columns.side, begun.columns.bias, seed, BAND)
     state.careful[0] = LIGHT
     _hold(part, state, HOLD)
     anneal(part, state, source, min(moves_per_mass, BAND_MOVES) * masses, BAND_HOT, COLD, False, BAND_FOCUS)

@@ -16,23 +16,20 @@ from dataclasses import dataclass
 import numpy as np
 
 from mdlcad.placement.chance import random_source
-from mdlcad.placement.costs import HARD
 from mdlcad.placement.crossings import settle_columns
 from mdlcad.placement.lattice import Lattice
 from mdlcad.placement.problem import Floats, Ints, Problem
+from mdlcad.placement.repair import Columns, repair
 
 STRIP, SQUAT = 4, 22
 """Least columns of a strip, about, and how many rows there are to each: where a narrow strip is tall, it turns often,
 and there trunks are long."""
-SETTLE, SETTLE_HOT, SETTLE_COLD = 1000, 10.0, 0.5
+SETTLE, SETTLE_HOT, SETTLE_COLD = 500, 10.0, 0.5
 """Moves a mass of the annealing of columns, and its heats."""
 CELL, CROWDED = 12, 1.15
 """Rows of a cell; how much fuller than the average cell one may be."""
-MEND_ROUNDS, MEND_EACH, MEND, MEND_HOT, MEND_REACH = 30, 5, 300, (6.0, 10.0), (2, 3, 4, 5, 6)
-"""Times that masses around a hub that holds too much are annealed again, and how many more for each such hub; moves a
-mass; first heats; how many couplings away they may be, one time after the other."""
-TOGETHER = 5
-"""The first so many times, all such hubs at once."""
+REPAIR_REACH = (1, 2, 2, 3, 4, 5)
+"""How many couplings away from a hub that holds too much masses may be that move for it, one time after the other."""
 REST = 4
 """About how many levels move on until two share a column: where all do, a mass has hardly any choice of columns. They
 do so where the strip has room, after at least half and at most twice as many."""
@@ -41,11 +38,10 @@ _SWEEPS = 12
 
 @dataclass(frozen=True, slots=True)
 class Start:
-    """A slot for every mass, the channel side of every coupling, the side of every bias leaf."""
+    """(M,) a slot for every mass, and the columns and sides that it was chosen for."""
 
     slot: Ints
-    side: Ints
-    bias: Ints
+    columns: Columns
 
 
 def start_by_levels(problem: Problem, lattice: Lattice, seed: int) -> Start:
@@ -63,53 +59,41 @@ def start_by_levels(problem: Problem, lattice: Lattice, seed: int) -> Start:
     room = np.zeros((len(lattice.column_x), int(np.max(cell)) + 1))
     for at, row in lattice.slots:
         room[at, min(row // CELL, room.shape[1] - 1)] += CROWDED * masses / len(lattice.slots)
-    side, bias = np.zeros(len(problem.coupling), np.int32), np.zeros(masses, np.int32)
-    _settle(problem, lattice, beside, (column, side, bias), cell, room, seed)
-    return Start(_stand(column, height, beside, lattice), side, bias)
+    columns = Columns(
+        column=column,
+        side=np.zeros(len(problem.coupling), np.int32),
+        bias=np.zeros(masses, np.int32),
+        into=np.argsort(problem.coupling[:, 1], kind="stable").astype(np.int32),
+        slots=np.bincount([at for at, _ in lattice.slots], minlength=len(lattice.column_x)).astype(np.int32),
+    )
+    _settle(problem, beside, columns, cell, room, seed)
+    return Start(_stand(columns.column, height, beside, lattice), columns)
 
 
 def _settle(
     problem: Problem,
-    lattice: Lattice,
     beside: list[list[int]],
-    chosen: tuple[Ints, Ints, Ints],
+    columns: Columns,
     cell: Ints,
     room: Floats,
     seed: int,
 ) -> None:
-    """Anneal columns and sides (of couplings and leaves), then those around hubs that hold too much, in place."""
-    masses = len(chosen[0])
-    into = np.argsort(problem.coupling[:, 1], kind="stable").astype(np.int32)
-    slots = np.bincount([at for at, _ in lattice.slots], minlength=len(lattice.column_x)).astype(np.int32)
-    source, hub = random_source(seed), np.zeros(masses)
-
-    def settle(among: Ints, exact: bool, moves: int, hot: float) -> float:
-        moves *= len(among)
-        return float(
-            settle_columns(
-                problem, into, *chosen, cell, room, slots, among, exact, hub, source, moves, hot, SETTLE_COLD
-            )
-        )
-
-    all_masses = np.arange(masses, dtype=np.int32)
-    settle(all_masses, False, SETTLE, SETTLE_HOT)
-    cost = settle(all_masses, True, 0, SETTLE_HOT)
-    wrong = np.flatnonzero(hub >= HARD).tolist()
-    for turn in range(MEND_ROUNDS + MEND_EACH * len(wrong)):
-        if not wrong:
-            return
-        near = set(wrong if turn < TOGETHER else wrong[turn % len(wrong) :][:1])
-        for _ in range(MEND_REACH[turn % len(MEND_REACH)]):
-            near |= {other for mass in near for other in beside[mass]}
-        held: tuple[Ints | Floats, ...] = (*chosen, hub)
-        before = [array.copy() for array in held]
-        after = settle(np.array(sorted(near), np.int32), True, MEND, MEND_HOT[turn % len(MEND_HOT)])
-        left = np.flatnonzero(hub >= HARD).tolist()
-        if (len(left), after) > (len(wrong), cost):
-            for array, old in zip(held, before, strict=True):
-                np.copyto(array, old)
-        else:
-            wrong, cost = left, after
+    """Anneal columns and sides (of couplings and leaves), then mend those around hubs that hold too much, in place."""
+    everyone = np.arange(len(columns.column), dtype=np.int32)
+    moves = SETTLE * len(everyone)
+    source = random_source(seed)
+    chosen = (columns.column, columns.side, columns.bias)
+    settle_columns(problem, columns.into, *chosen, cell, room, columns.slots, source, moves, SETTLE_HOT, SETTLE_COLD)
+    wrong = columns.wrong(problem, everyone)
+    for reach in REPAIR_REACH:
+        for hub in wrong:
+            if not columns.wrong(problem, np.array([hub], np.int32)):
+                continue
+            near = {hub}
+            for _ in range(reach):
+                near |= {other for mass in near for other in beside[mass]}
+            repair(problem, columns, near, seed)
+        wrong = columns.wrong(problem, np.array(wrong, np.int32))
 
 
 def _neighbours(problem: Problem, masses: int) -> list[list[int]]:
