@@ -10,6 +10,8 @@ side, which is what asks most often for an order of trunks, and such orders make
 
 from __future__ import annotations
 
+import threading
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import numpy as np
@@ -20,6 +22,7 @@ from mdlcad.placement.costs import BIAS_SIDE, SLOT
 from mdlcad.placement.lattice import Lattice
 from mdlcad.placement.levels import start_by_levels
 from mdlcad.placement.problem import Ints, Problem
+from mdlcad.placement.repair import Columns, repair_all
 from mdlcad.placement.state import COLUMN, State, start
 
 BAND = 24
@@ -28,31 +31,56 @@ every band need not be so in all."""
 SQUARES = 0.85
 """Share of the black squares that may be taken; a network that needs more takes any slot."""
 COLD = 0.2
-ATTEMPTS, FAR_SEED = 3, 1_000_003
-"""Starts to try, and how far their seeds are apart: not the next ones, which the caller may try."""
-BAND_MOVES, BAND_HOT, BAND_FOCUS = 1000, 2.0, 0.5
+ATTEMPTS, ATTEMPTED, FAR_SEED = 3, 6000, 1_000_003
+"""Starts to try, about how many masses all of them may have, and how far their seeds are apart: not the next ones,
+which the caller may try."""
+BAND_MOVES, BAND_HOT, BAND_FOCUS = 800, 2.0, 0.5
 WHOLE_MOVES, WHOLE_HOT, WHOLE_FOCUS = 200, 1.2, 0.5
 """Moves a mass, first heat, and share of the moves that are on troubled masses."""
 HOLD = 1.0
 """What it costs at first to leave the columns and sides of the start, where no hub holds too much."""
 LIGHT = 0.3
 """What a trunk without a track weighs at first beside a hub that holds too much: it is mended more easily."""
-MEND_ROUNDS, MEND_EACH, MEND_MOVES, MEND_HEATS = 60, 10, 10_000, (2.0, 1.0, 4.0)
-"""Rounds on the masses of one troubled spot alone, and how many more for each spot that there is at first; their moves,
-and their first heats, one after the other."""
+MEND_IDLE, MEND_EACH, MEND_MOVES, MEND_HEATS = 40, 10, 10_000, (2.0, 1.0, 4.0)
+"""Rounds on the masses of one troubled spot alone without any gain, and how many more for each spot that there is;
+their moves, and their first heats, one after the other."""
+HANGS = 4
+"""Times that what still hangs on hubs which hold too much is hung up anew, exactly."""
 
 
-def place_large(problem: Problem, lattice: Lattice, seed: int, moves_per_mass: int) -> tuple[State, float]:
-    """A state with few broken rules or none, and their cost. Same arguments, same result."""
-    best = _attempt(problem, lattice, seed, moves_per_mass)
-    for turn in range(1, ATTEMPTS):
-        if best[1] < 1e-6:
-            break
-        best = min(best, _attempt(problem, lattice, seed + turn * FAR_SEED, moves_per_mass), key=lambda found: found[1])
+def place_large(
+    problem: Problem, lattice: Lattice, seed: int, moves_per_mass: int, workers: int = 1
+) -> tuple[State, float]:
+    """A state with few broken rules or none, and their cost. Same arguments, same result, for any ``workers``.
+
+    So many starts as there are ``workers`` are tried at once. The first without broken rules is taken, counted by its
+    seed and not by when it is done, or the best.
+    """
+    given_up = threading.Event()
+    best: tuple[State, float] | None = None
+    with ThreadPoolExecutor(max(1, workers)) as pool:
+        found = [
+            pool.submit(_attempt, problem, lattice, seed + turn * FAR_SEED, moves_per_mass, given_up)
+            for turn in range(min(ATTEMPTS, -(-ATTEMPTED // len(problem.mass))))
+        ]
+        try:
+            for future in found:
+                state, cost = future.result()
+                if best is None or cost < best[1]:
+                    best = state, cost
+                if cost < 1e-6:
+                    break
+        finally:
+            given_up.set()
+            for future in found:
+                future.cancel()
+    assert best is not None
     return best
 
 
-def _attempt(problem: Problem, lattice: Lattice, seed: int, moves_per_mass: int) -> tuple[State, float]:
+def _attempt(
+    problem: Problem, lattice: Lattice, seed: int, moves_per_mass: int, given_up: threading.Event
+) -> tuple[State, float]:
     masses = len(problem.mass) - 1
     squares = _squares(lattice, masses)
     part = _only(problem, squares)
@@ -60,13 +88,19 @@ def _attempt(problem: Problem, lattice: Lattice, seed: int, moves_per_mass: int)
     state, source = careful(part, begun.slot, begun.columns.side, begun.columns.bias, seed, BAND)
     state.careful[0] = LIGHT
     _hold(part, state, HOLD)
-    anneal(part, state, source, min(moves_per_mass, BAND_MOVES) * masses, BAND_HOT, COLD, False, BAND_FOCUS)
+    moves = 0 if given_up.is_set() else min(moves_per_mass, BAND_MOVES) * masses
+    anneal(part, state, source, moves, BAND_HOT, COLD, False, BAND_FOCUS)
     state, _ = careful(part, state.mass[:, 0], state.side, state.mass[:, 1], seed)
     _hold(part, state, HOLD)
-    moves = min(moves_per_mass, WHOLE_MOVES) * masses
+    moves = 0 if given_up.is_set() else min(moves_per_mass, WHOLE_MOVES) * masses
     cost = float(anneal(part, state, source, moves, WHOLE_HOT, COLD, False, WHOLE_FOCUS))
     _hold(part, state, 0.0)
-    mend(part, state, source, cost, False)
+    cost = mend(part, state, source, cost, False, given_up)
+    for turn in range(HANGS):
+        if cost < 1e-6 or given_up.is_set() or not _hang_anew(part, state, seed + turn):
+            break
+        cost = float(anneal(part, state, source, 0, COLD, COLD, False))
+        cost = mend(part, state, source, cost, False, given_up)
     whole, source = careful(problem, squares[state.mass[:, 0]], state.side, state.mass[:, 1], seed)
     return whole, float(anneal(problem, whole, source, 0, WHOLE_HOT, COLD, False))
 
@@ -81,28 +115,57 @@ def careful(
     return state, source
 
 
-def mend(problem: Problem, state: State, source: npt.NDArray[np.uint64], cost: float, fixed: bool) -> float:
-    """Anneal one troubled spot after the other, keeping what is no worse; ``fixed`` keeps the slots. The cost."""
+def mend(
+    problem: Problem,
+    state: State,
+    source: npt.NDArray[np.uint64],
+    cost: float,
+    fixed: bool,
+    given_up: threading.Event | None = None,
+) -> float:
+    """Anneal one troubled spot after the other, keeping what is no worse; ``fixed`` keeps the slots. The cost.
+
+    Ends at once when it is ``given_up``: then nobody wants the result any more.
+    """
+    given_up = given_up or threading.Event()
     spots = trouble(problem, state)
-    rounds, at = MEND_ROUNDS + MEND_EACH * len(spots), 0
-    for turn in range(rounds):
-        # what no spot is to blame for is tabs, or couplings that reach too far
-        if cost < 1e-6 or not len(spots):
-            break
+    turn, at, idle = 0, 0, 0
+    # what no spot is to blame for is tabs, or couplings that reach too far
+    while cost > 1e-6 and len(spots) and idle < MEND_IDLE + MEND_EACH * len(spots) and not given_up.is_set():
         heat = MEND_HEATS[turn % len(MEND_HEATS)]
         before = [array.copy() for array in (state.mass, state.mass_at, state.side)]
         spot = spots[at % len(spots)]
         after = anneal(problem, state, source, MEND_MOVES, heat, COLD, fixed, 1.0, spot)
-        at += 1
+        turn, at, idle = turn + 1, at + 1, idle + 1
         if after > cost:
             for array, old in zip((state.mass, state.mass_at, state.side), before, strict=True):
                 array[:] = old
         elif after < cost:
-            cost = after
+            cost, idle = after, 0
             here = tuple(spot.tolist())
             spots = trouble(problem, state)
             at = next((i for i, found in enumerate(spots.tolist()) if tuple(found) > here), 0)
     return cost
+
+
+def _hang_anew(problem: Problem, state: State, seed: int) -> bool:
+    """Mend hubs that hold too much by columns, where annealing cannot; whether any mass has moved.
+
+    Masses go to the free slots of their new columns that are nearest to their rows.
+    """
+    column = problem.slot[state.mass[:, SLOT], 0].copy()
+    columns = Columns.of(problem, column, state.side.copy(), state.mass[:, BIAS_SIDE].copy())
+    repair_all(problem, columns, seed)
+    moved = np.flatnonzero(columns.column != problem.slot[state.mass[:, SLOT], 0])
+    rows = problem.slot[state.mass[moved, SLOT], 1]
+    state.mass_at[state.mass[moved, SLOT]] = -1
+    for mass, row in zip(moved.tolist(), rows.tolist(), strict=True):
+        at = problem.slot_at[columns.column[mass]]
+        free = [int(slot) for slot in at[at >= 0] if state.mass_at[slot] < 0]
+        slot = min(free, key=lambda slot: (abs(int(problem.slot[slot, 1]) - row), slot))
+        state.mass[mass, SLOT], state.mass_at[slot] = slot, mass
+    state.side[:], state.mass[:, BIAS_SIDE] = columns.side, columns.bias
+    return bool(len(moved))
 
 
 def _hold(problem: Problem, state: State, price: float) -> None:

@@ -19,7 +19,7 @@ from mdlcad.placement.chance import random_source
 from mdlcad.placement.crossings import settle_columns
 from mdlcad.placement.lattice import Lattice
 from mdlcad.placement.problem import Floats, Ints, Problem
-from mdlcad.placement.repair import Columns, repair
+from mdlcad.placement.repair import Columns, repair_all
 
 STRIP, SQUAT = 4, 22
 """Least columns of a strip, about, and how many rows there are to each: where a narrow strip is tall, it turns often,
@@ -28,8 +28,6 @@ SETTLE, SETTLE_HOT, SETTLE_COLD = 500, 10.0, 0.5
 """Moves a mass of the annealing of columns, and its heats."""
 CELL, CROWDED = 12, 1.15
 """Rows of a cell; how much fuller than the average cell one may be."""
-REPAIR_REACH = (1, 2, 2, 3, 4, 5)
-"""How many couplings away from a hub that holds too much masses may be that move for it, one time after the other."""
 REST = 4
 """About how many levels move on until two share a column: where all do, a mass has hardly any choice of columns. They
 do so where the strip has room, after at least half and at most twice as many."""
@@ -59,41 +57,24 @@ def start_by_levels(problem: Problem, lattice: Lattice, seed: int) -> Start:
     room = np.zeros((len(lattice.column_x), int(np.max(cell)) + 1))
     for at, row in lattice.slots:
         room[at, min(row // CELL, room.shape[1] - 1)] += CROWDED * masses / len(lattice.slots)
-    columns = Columns(
-        column=column,
-        side=np.zeros(len(problem.coupling), np.int32),
-        bias=np.zeros(masses, np.int32),
-        into=np.argsort(problem.coupling[:, 1], kind="stable").astype(np.int32),
-        slots=np.bincount([at for at, _ in lattice.slots], minlength=len(lattice.column_x)).astype(np.int32),
-    )
-    _settle(problem, beside, columns, cell, room, seed)
+    columns = Columns.of(problem, column, np.zeros(len(problem.coupling), np.int32), np.zeros(masses, np.int32))
+    _settle(problem, columns, cell, room, seed)
     return Start(_stand(columns.column, height, beside, lattice), columns)
 
 
 def _settle(
     problem: Problem,
-    beside: list[list[int]],
     columns: Columns,
     cell: Ints,
     room: Floats,
     seed: int,
 ) -> None:
     """Anneal columns and sides (of couplings and leaves), then mend those around hubs that hold too much, in place."""
-    everyone = np.arange(len(columns.column), dtype=np.int32)
-    moves = SETTLE * len(everyone)
+    moves = SETTLE * len(columns.column)
     source = random_source(seed)
     chosen = (columns.column, columns.side, columns.bias)
     settle_columns(problem, columns.into, *chosen, cell, room, columns.slots, source, moves, SETTLE_HOT, SETTLE_COLD)
-    wrong = columns.wrong(problem, everyone)
-    for reach in REPAIR_REACH:
-        for hub in wrong:
-            if not columns.wrong(problem, np.array([hub], np.int32)):
-                continue
-            near = {hub}
-            for _ in range(reach):
-                near |= {other for mass in near for other in beside[mass]}
-            repair(problem, columns, near, seed)
-        wrong = columns.wrong(problem, np.array(wrong, np.int32))
+    repair_all(problem, columns, seed)
 
 
 def _neighbours(problem: Problem, masses: int) -> list[list[int]]:

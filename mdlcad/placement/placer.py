@@ -55,15 +55,17 @@ def place(
     seed: int,
     moves_per_mass: int = MOVES_PER_MASS,
     columns: Answers | None = None,
+    workers: int = 1,
 ) -> PlaceResult:
     """Anneal ``network`` onto ``lattice``, which must have a slot for every mass. Same arguments, same result.
 
     Args:
         columns: those chosen so far, in a search that places many times.
+        workers: starts of a large network that are tried at once; the result is the same for any number.
     """
     problem = build(network, lattice, rules)
     if len(network.masses) > LARGE:
-        state, cost = place_large(problem, lattice, seed, moves_per_mass)
+        state, cost = place_large(problem, lattice, seed, moves_per_mass, workers)
         placement = placement_of(network, lattice, state.mass[:, 0], seed)
         return PlaceResult(placement, cost, sides_of(network, placement, rules, state, cost))
     slots = _start(problem, lattice, len(network.masses), seed, columns or Answers())

@@ -18,10 +18,14 @@ from mdlcad.placement.crossings import EDGE, hub_costs
 from mdlcad.placement.problem import Floats, Ints, Problem
 from mdlcad.solver import solver_with
 
-LIMIT = 1.0
+LIMIT = 0.1
 """CP-SAT's deterministic time for an answer."""
-ANSWERS = 40
+ANSWERS = 25
 """Most answers to ask for around one hub."""
+REACH = (1, 2, 2, 3, 4, 5)
+"""How many couplings away from a hub that holds too much masses may be that move for it, one time after the other."""
+SPARE = 25
+"""Up to so many masses, the answer with the fewest trunks is asked for; for more, any."""
 WIDTH = 2
 """Columns that a mass may move by."""
 
@@ -41,6 +45,13 @@ class Columns:
     bias: Ints
     into: Ints
     slots: Ints
+
+    @staticmethod
+    def of(problem: Problem, column: Ints, side: Ints, bias: Ints) -> Columns:
+        """Those, on the slots of ``problem``."""
+        into = np.argsort(problem.coupling[:, 1], kind="stable").astype(np.int32)
+        slots = np.bincount(problem.slot[:, 0], minlength=problem.slot_at.shape[0]).astype(np.int32)
+        return Columns(column, side, bias, into, slots)
 
     def costs(self, problem: Problem, hubs: Ints) -> Floats:
         """(N, 2) what rules cost that ``hubs`` break by themselves, and by orders."""
@@ -64,6 +75,20 @@ class Columns:
         return [int(j) for j in self.into[problem.mass[mass, 1] : problem.mass[mass + 1, 1]]]
 
 
+def repair_all(problem: Problem, columns: Columns, seed: int) -> None:
+    """Mend those hubs that hold too much, one by one, with more and more around them; in place."""
+    wrong = columns.wrong(problem, np.arange(len(columns.column), dtype=np.int32))
+    for reach in REACH:
+        for hub in wrong:
+            if not columns.wrong(problem, np.array([hub], np.int32)):
+                continue
+            near = {hub}
+            for _ in range(reach):
+                near |= {other for mass in near for other in columns.beside(problem, mass)}
+            repair(problem, columns, near, seed)
+        wrong = columns.wrong(problem, np.array(wrong, np.int32))
+
+
 def repair(problem: Problem, columns: Columns, movable: Iterable[int], seed: int) -> bool:
     """Move masses of ``movable``, their sides and leaves, until no hub of theirs and beside them holds too much.
 
@@ -83,6 +108,8 @@ def repair(problem: Problem, columns: Columns, movable: Iterable[int], seed: int
         if hub not in far:
             model.hold(hub)
     model.keep_room()
+    if len(masses) <= SPARE:
+        model.spare_trunks()
     before = [array.copy() for array in (columns.column, columns.side, columns.bias)]
     solver = solver_with(seed, LIMIT)
     for _ in range(ANSWERS):
@@ -118,12 +145,14 @@ class _Counts:
         self.leaf: dict[int, cp_model.IntVar] = {}
         self._problem, self._columns, self._free = problem, columns, free
         self._yes = self.model.new_constant(1)
+        self._trunks: list[cp_model.LinearExprT] = []
 
     def hold(self, hub: int) -> None:
         """A side of ``hub`` holds an item a rung plate, one post, and one item where the rim is beside it."""
         p, plates = self._problem, int(self._problem.sizes[2])
         at, last = self._at(hub), p.slot_at.shape[0] - 1
         own = (self.model.new_bool_var(""), self.model.new_bool_var(""))
+        self._trunks += own
         items: tuple[list[cp_model.LinearExprT], list[cp_model.LinearExprT]] = ([own[0]], [own[1]])
         posts: tuple[list[cp_model.LinearExprT], list[cp_model.LinearExprT]] = ([], [])
         for j in self._columns.outs(p, hub):
@@ -162,6 +191,10 @@ class _Counts:
             here = [self.at[mass][column] for mass in free.tolist() if column in self.at[mass]]
             if len(here) > left:
                 self.model.add(sum(here) <= left)
+
+    def spare_trunks(self) -> None:
+        """As few trunks as may be."""
+        self.model.minimize(sum(self._trunks))
 
     def take(self, solver: cp_model.CpSolver) -> None:
         """Write the answer into the columns."""

@@ -4,7 +4,7 @@
 
 The networks are copies of the lock's as compiled, one tenth of the couplings swapped between copies at most
 ``--reach`` apart (default 1; as large as the number of copies for any two). The lattice is that of a square in which
-the masses fill ``--fill`` of the slots (default 0.22), sized for ``pom_cut``. Every size runs in a process of its own.
+the masses fill ``--fill`` of the slots (default 0.18), sized for ``pom_cut``. Every size runs in a process of its own.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ from tests.placement.tiles import tiled
 
 COPIES = (3, 4, 10, 20)
 CORES = 2
-"""That channels are routed on; placing takes one."""
+"""Starts of a placement that are tried at once, and channels that are routed at once."""
 PORT_ROWS = 5
 """Rows from port to port, unless the wall is too short."""
 PEAK = 1.8
@@ -77,7 +77,7 @@ def measure(network: Network, fill: float) -> dict[str, Any]:
     rules = size(network, load_process("pom_cut"), {mass.name: PEAK for mass in network.masses}).rules
     lattice = lattice_for(network, rules, fill)
     began = time.perf_counter()
-    placed = place(network, lattice, rules, 1)
+    placed = place(network, lattice, rules, 1, workers=CORES)
     middle = time.perf_counter()
     words, findings = "", -1
     try:
@@ -105,7 +105,7 @@ def main() -> None:
     parser = argparse.ArgumentParser()
     parser.add_argument("copies", type=int, nargs="*", default=list(COPIES))
     parser.add_argument("--reach", type=int, default=1)
-    parser.add_argument("--fill", type=float, default=0.22)
+    parser.add_argument("--fill", type=float, default=0.18)
     parser.add_argument("--limit", type=float, default=600.0, help="seconds a size")
     parser.add_argument("--png", type=Path, default=ROOT / "docs" / "images" / "layout-cost.png")
     parser.add_argument("--one", type=Path, help="measure the one size, of the network in this file")

@@ -5,6 +5,7 @@ import pytest
 
 from mdlcad.placement.lattice import Lattice, lattices, place_ports
 from mdlcad.placement.levels import start_by_levels
+from mdlcad.placement.placer import place
 from mdlcad.placement.problem import Problem, build
 from mdlcad.placement.repair import Columns, repair
 from tests.placement.networks import MAZE_PORTS, SQUARE, maze, pom_rules
@@ -100,6 +101,11 @@ def test_where_no_way_is_found_nothing_is_changed(problem: Problem, columns: Col
     assert not repair(none, columns, around(problem, columns, hub, 2), 1)
     for name in ("column", "side", "bias"):
         assert np.array_equal(getattr(columns, name), getattr(before, name))
+
+
+def test_starts_tried_at_once_give_what_one_after_the_other_do() -> None:
+    one, two = (place(LARGE, lattice(), pom_rules(LARGE), 3, 100, workers=workers) for workers in (1, 2))
+    assert one == two
 
 
 def test_the_same_answer_every_time(problem: Problem) -> None:
