@@ -104,7 +104,7 @@ def test_where_no_way_is_found_nothing_is_changed(problem: Problem, columns: Col
 
 
 def test_starts_tried_at_once_give_what_one_after_the_other_do() -> None:
-    one, two = (place(LARGE, lattice(), pom_rules(LARGE), 3, 100, workers=workers) for workers in (1, 2))
+    one, two = (place(LARGE, lattice(), pom_rules(LARGE), 3, workers=workers) for workers in (1, 2))
     assert one == two
 
 
