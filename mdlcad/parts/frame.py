@@ -94,7 +94,7 @@ def frame_bodies(
 
     Args:
         posts: all posts; those that reach the base or the cover get their holes there.
-        notches: what is to be cut from the rim of a plate, by plate name.
+        notches: what is to be cut from the rim of a plate and from the shims on both sides of it, by plate name.
         screws: go through everything here. windows: go through the cover.
     """
     inside = interior(stack, boundary)
@@ -122,7 +122,9 @@ def frame_bodies(
             continue
         z = stack.top(below.name)
         height = round(stack.bottom(above.name) - z, 6)
-        for index, piece in enumerate(pieces(rim)):
+        # what passes the rim of a plate would rub on shims that go on above or below it
+        passed = [*notches.get(below.name, ()), *notches.get(above.name, ())]
+        for index, piece in enumerate(pieces(cut(rim, passed))):
             name = f"shim.{above.name}" if index == 0 else f"shim.{above.name}.{index}"
             bodies.append(Body(name, BodyKind.SPACER, "shims", z, height, piece, STILL, (FRAME_REF,), palette.SPACER))
     return bodies

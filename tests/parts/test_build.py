@@ -82,6 +82,31 @@ def test_the_two_checks_above_see_a_moved_unit(device: Device, bodies: tuple[Bod
     assert overlaps([moved(b, 3.0) if b.name == "unit.m0" else b for b in bodies])
 
 
+def rubbed(bodies: tuple[Body, ...]) -> list[tuple[str, str]]:
+    """Shims, and what moves over or under them without any gap."""
+    shims = [body for body in bodies if body.plate == "shims"]
+    moving = [body for body in bodies if any(body.throw)]
+    return [
+        (shim.name, body.name)
+        for shim in shims
+        for body in moving
+        if shim.z <= body.z + body.thickness + 1e-6
+        and body.z <= shim.z + shim.thickness + 1e-6
+        and shapely.intersection(shim.section, region(body)).area > 1e-6
+    ]
+
+
+def test_nothing_that_moves_rubs_on_shims(bodies: tuple[Body, ...]) -> None:
+    assert rubbed(bodies) == []
+
+
+def test_a_shim_that_goes_on_over_a_tab_is_seen(bodies: tuple[Body, ...]) -> None:
+    tab = next(body for body in bodies if body.kind is BodyKind.TAB)
+    shim = next(body for body in bodies if body.plate == "shims" and abs(body.z - tab.z - tab.thickness) < 1e-6)
+    uncut = replace(shim, section=shapely.convex_hull(shim.section))
+    assert (shim.name, tab.name) in rubbed((uncut, tab))
+
+
 def test_every_polygon_is_valid_and_has_no_slivers(bodies: tuple[Body, ...]) -> None:
     for body in bodies:
         for shape in (body.section, body.assembled, body.envelope):
