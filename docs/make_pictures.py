@@ -10,10 +10,10 @@ import sys
 import tempfile
 from pathlib import Path
 
-from browser import BROWSER, browse
 from PIL import Image
 
 from mdlcad.cli import main as mdlcad
+from tests.browser import BROWSER, browse
 
 IMAGES = Path(__file__).resolve().parent / "images"
 MOMENTS = ("0", "1.5", "3")

@@ -13,13 +13,14 @@ import numpy as np
 import pytest
 from PIL import Image
 
-import docs.browser
 from mdlcad.view.colours import ColourBy
 from mdlcad.view.page import page
 from mdlcad.view.scene import Look, Scene
+from tests.browser import BROWSER
+from tests.browser import browse as run_browser
 
 needs_browser = pytest.mark.skipif(
-    docs.browser.BROWSER is None, reason="NO BROWSER: chromium is not on this machine, so the page was not tried in one"
+    BROWSER is None, reason="NO BROWSER: chromium is not on this machine, so the page was not tried in one"
 )
 
 
@@ -95,7 +96,7 @@ def test_the_same_bytes_in_another_process(voter: Path, written: bytes, tmp_path
 
 def browse(folder: Path, *arguments: str) -> str:
     """Run the browser with no network; what it printed."""
-    return docs.browser.browse(folder, "1000,700", *arguments)
+    return run_browser(folder, "1000,700", *arguments)
 
 
 # goes over the canvas with the mouse until a card says what is there
