@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
+from dataclasses import replace
 from pathlib import Path
+
+from shapely.affinity import translate
 
 from mdlcad.artefact import write_atomic
 from mdlcad.aside import Aside
@@ -15,6 +18,21 @@ from mdlcad.mechanics import Process
 from mdlcad.parts.body import Body
 from mdlcad.parts.plates import plates_of
 from mdlcad.parts.tiles import tiles_of
+
+
+def laid_out(bodies: Sequence[Body], apart_mm: float) -> list[Body]:
+    """What is cut from one sheet, as it lies there: shims, which lie at many heights, side by side in x.
+
+    Args:
+        apart_mm: what is left of the sheet between two heights: a wall, that the machine can leave.
+    """
+    heights = sorted({body.z for body in bodies})
+    boxes = [body.section.bounds for body in bodies]
+    step = max(box[2] for box in boxes) - min(box[0] for box in boxes) + apart_mm
+    return [
+        body if body.z == heights[0] else replace(body, section=translate(body.section, heights.index(body.z) * step))
+        for body in bodies
+    ]
 
 
 def write_files(
@@ -57,8 +75,9 @@ def write_files(
                 *((f"tiles/{tile.name}", tile.bodies) for tile in tiles if tile.name != plate),
             ]:
                 put(f"{stem}.stl", stl_plate(plate, cut))
-                put(f"{stem}.svg", svg_plate(plate, cut))
-                put(f"{stem}.dxf", dxf_plate(cut, kerf_mm))
+                flat = laid_out(cut, process.machine.min_wall)
+                put(f"{stem}.svg", svg_plate(plate, flat))
+                put(f"{stem}.dxf", dxf_plate(flat, kerf_mm))
             put(f"plates/{plate}.step", step_assembly(plate, members))
         progress("STEP of the device")
         put(f"{design}.step", step_assembly(design, bodies) if aside is None else aside.result())
