@@ -4,7 +4,8 @@
    level or two neighbouring ones.
 2. Every level goes to one column, the next to the same column or a neighbour, so no coupling spans more than one. The
    path goes to and fro across a strip of columns, from one end of it to the other, and then on to the next strip.
-3. Columns are annealed until no hub has more on a side than it holds (``crossings``).
+3. Columns are annealed until hardly any hub has more on a side than it holds (``crossings``), and the last are mended
+   exactly (``repair``).
 4. Within its column a mass goes to the height of those it is coupled to, and into rows of the column's own parity where
    these suffice: two hubs of one row are what asks for an order of trunks.
 """

@@ -215,49 +215,33 @@ def advance_devices(
             for i in range(n):
                 for lane in range(BLOCK):
                     tilt[i, lane0 + lane] = max(tilt[i, lane0 + lane], abs(tip[i, lane]))
+        for i in range(n):
+            for lane in range(BLOCK):
+                stage_y[i, lane], stage_u[i, lane] = y[i, lane], u[i, lane]
         for stage in range(4):
             at = 2 * within + (stage + 1) // 2
-            if stage == 0:
-                pushes(
-                    push,
-                    y,
-                    u,
-                    wave[at % points],
-                    phase,
-                    masses,
-                    springs,
-                    row_start,
-                    column,
-                    outside,
-                    damping,
-                    angle,
-                    tip,
-                    tilting,
-                    lifts,
-                )
-            else:
-                pushes(
-                    push,
-                    stage_y,
-                    stage_u,
-                    wave[at % points],
-                    phase,
-                    masses,
-                    springs,
-                    row_start,
-                    column,
-                    outside,
-                    damping,
-                    angle,
-                    tip,
-                    tilting,
-                    lifts,
-                )
+            pushes(
+                push,
+                stage_y,
+                stage_u,
+                wave[at % points],
+                phase,
+                masses,
+                springs,
+                row_start,
+                column,
+                outside,
+                damping,
+                angle,
+                tip,
+                tilting,
+                lifts,
+            )
             share = 1.0 if stage == 0 or stage == 3 else 2.0
             ahead = h if stage == 2 else 0.5 * h
             for i in range(n):
                 for lane in range(BLOCK):
-                    slope = u[i, lane] if stage == 0 else stage_u[i, lane]
+                    slope = stage_u[i, lane]
                     rate = per * push[i, lane]
                     if stage == 0:
                         sum_y[i, lane], sum_u[i, lane] = slope, rate
