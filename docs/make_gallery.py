@@ -48,8 +48,8 @@ def entry(folder: Path) -> str:
     proved = f"{proof.transitions_checked} of {proof.transitions_total} transitions right as drawn" if proof else ""
     extent = " x ".join(f"{side:.0f}" for side in size) + " mm" if size else ""
     facts = [
-        f"{report.masses} masses, {report.couplings} couplings",
-        f"{report.cycles_per_tick} clock cycles a decision",
+        f"{_count(report.masses, 'mass', 'masses')}, {_count(report.couplings, 'coupling')}",
+        f"{_count(report.cycles_per_tick, 'clock cycle')} a decision",
         extent,
         f"process {report.process}, seed {report.seed}",
         proved,
@@ -70,8 +70,8 @@ def entry(folder: Path) -> str:
 """
 
 
-def _count(number: int, what: str) -> str:
-    return f"{number} {what}" if number == 1 else f"{number} {what}s"
+def _count(number: int, what: str, many: str = "") -> str:
+    return f"{number} {what if number == 1 else many or what + 's'}"
 
 
 if __name__ == "__main__":

@@ -91,7 +91,7 @@ def _draw_choices(figure: Figure, place: SubplotSpec, result: CharacterisationRe
         colours = [GOOD if value == standing else ZERO for value in choice.candidates]
         axes.bar(range(len(share)), share, color=colours, width=0.7)
         words = [value if isinstance(value, str) else f"{value:g}" for value in choice.candidates]
-        axes.set_xticks(range(len(share)), words, fontsize=7.5)
+        axes.set_xticks(range(len(share)), words, fontsize=6.5)
         axes.set_xlabel(choice.key, fontsize=8.5)
         axes.set_ylim(0, 100)
         if number:

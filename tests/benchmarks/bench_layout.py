@@ -24,6 +24,7 @@ import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLocator
 
 from mdlcad.artefact import from_json, to_json
 from mdlcad.errors import SignoffError
@@ -152,6 +153,12 @@ def draw(rows: list[dict[str, Any]], png: Path) -> None:
         axes.loglog([r["masses"] for r in left], [r[key] for r in left], "o", color="white", markersize=2)
     axes.set_xlabel("masses (copies of the lock, a tenth of the couplings swapped)")
     axes.set_ylabel(f"seconds, {CORES} cores")
+    # the sizes that were measured and round seconds, as plain numbers
+    axes.set_xticks([row["masses"] for row in rows], [f"{row['masses']:,}" for row in rows])
+    axes.xaxis.set_minor_locator(NullLocator())
+    axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axes.yaxis.set_major_formatter(FuncFormatter(lambda seconds, _: f"{seconds:g}"))
+    axes.yaxis.set_minor_formatter(NullFormatter())
     axes.grid(True, which="major", color="0.9")
     axes.legend(frameon=False)
     figure.tight_layout()

@@ -11,6 +11,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 from matplotlib.axes import Axes
 
+from mdlcad.mechanics import process_names
 from mdlcad.mechanics.beam.curves import Curve
 from tests.mechanics.beam import curves
 
@@ -21,8 +22,9 @@ def draw(axes: Axes, curve: Curve, title: str) -> None:
     axes.plot(curve.displacement, curve.reduced, "-", color="#1b6ca8", label="reduced model")
     axes.plot(curve.displacement, curve.force, "o", color="#c8553d", markersize=3, label="beam computation")
     axes.axhline(0.0, color="0.8", linewidth=0.8, zorder=0)
-    rests = curve.rests() if curve.part == "unit" else []
-    axes.plot(rests, [0.0] * len(rests), "k^", markersize=6, label="rests here")
+    if curve.part == "unit":
+        rests = curve.rests()
+        axes.plot(rests, [0.0] * len(rests), "k^", markersize=6, label="rests here")
     axes.set_title(f"{title}: {100 * curve.error:.1f} % rms, strain {100 * curve.strain.max():.1f} %", fontsize=8)
     axes.tick_params(labelsize=7)
 
@@ -33,7 +35,8 @@ def main() -> None:
     figure, panels = plt.subplots(1, 3, figsize=(10, 3.2), dpi=130)
     for axes, curve in zip(panels, curves.units(process, sizing), strict=True):
         draw(axes, curve, curve.state)
-    panels[2].legend(fontsize=7, frameon=False)
+    # where no curve runs
+    panels[0].legend(fontsize=7, frameon=False, loc="upper left")
     finish(figure, folder / "beam-unit.png")
     parts = [curves.spring(process, sizing), *curves.leaves(process, sizing)]
     figure, grid = plt.subplots(2, 4, figsize=(13, 6), dpi=110)
@@ -43,7 +46,7 @@ def main() -> None:
     for axes in list(grid.flat)[len(parts) :]:
         axes.set_axis_off()
     finish(figure, folder / "beam-leaves.png")
-    for name in ("pom_cut", "petg_fdm", "pa12_mjf"):
+    for name in process_names():
         process, sizing = curves.sized(name)
         every = [*curves.units(process, sizing), curves.spring(process, sizing), *curves.leaves(process, sizing)]
         for curve in every:
