@@ -124,7 +124,8 @@ def terminals(
 ) -> tuple[TabTerminal, ...]:
     """How every port's tab leaves the device, in the order of ``ports``.
 
-    A port too near a corner for its tab to pass the rim there passes as near as it can and steps sideways outside.
+    A port too near a corner for its tab to pass the rim there passes as near as it can and steps sideways outside, onto
+    a foot of a bar's full width in the middle of the port's place.
     """
     return tuple(
         _vertical(port, inner, column_x, row_y, rules)
@@ -167,7 +168,7 @@ def _horizontal(
     exact = next((r for r in rows if abs(row_y[r] - y) < 1e-6), None)
     path = [(edge, y), (tip, y)]
     if abs(y - port.y) > 1e-9:
-        path.append((tip, port.y))
+        path += [(tip, port.y), (tip + outside * rules.bar_width / 2, port.y)]
     inward = edge - outside * rules.bar_width
     return TabTerminal(
         port.bit, port.mass, False, channel_at(column_x, inward), rows, exact, edge, y, outside, tuple(path)
@@ -205,7 +206,7 @@ def _vertical(
     tip = port.y + outside * _overhang(port, rules)
     path = [(x, row_y[row]), (x, tip)]
     if abs(x - port.x) > RESOLUTION:
-        path.append((port.x, tip))
+        path += [(port.x, tip), (port.x, tip + outside * rules.bar_width / 2)]
     return TabTerminal(
         port.bit, port.mass, True, channel_at(column_x, x), rows, row, x, row_y[row], outside, tuple(path)
     )

@@ -211,12 +211,20 @@ def _tabs(pen: Pen, layout: Layout, rules: LayoutRules, lanes: Lanes, nets: dict
     for tab in layout.tabs:
         # a box a straight piece, so that a net that is picked out is outlined here as elsewhere
         half = rules.bar_width / 2
-        for (x0, y0), (x1, y1) in pairwise(tab.path):
-            # fills the corners between pieces
-            dx, dy = (half, 0.0) if x0 == x1 else (0.0, half)
-            low, high = (min(x0, x1) - dx, min(y0, y1) - dy), (max(x0, x1) + dx, max(y0, y1) + dy)
+        last = len(tab.path) - 2
+        for piece, ((x0, y0), (x1, y1)) in enumerate(pairwise(tab.path)):
+            # pieces run on into the corners between them; the tab's own two ends are flat
+            before, after = half if piece else 0.0, half if piece < last else 0.0
+            if x0 == x1:
+                way = math.copysign(1.0, y1 - y0)
+                low, high = sorted((y0 - way * before, y1 + way * after))
+                corners = (x0 - half, low), (x0 + half, high)
+            else:
+                way = math.copysign(1.0, x1 - x0)
+                low, high = sorted((x0 - way * before, x1 + way * after))
+                corners = (low, y0 - half), (high, y0 + half)
             style = f'class="c {lanes.key[tab.plate]} {nets[tab.net]}"'
-            pen.box(low, high, style, f"tab of {tab.bit} on {tab.plate}, moved by {tab.net}")
+            pen.box(*corners, style, f"tab of {tab.bit} on {tab.plate}, moved by {tab.net}")
 
 
 def _hubs(pen: Pen, placement: Placement, rules: LayoutRules, nets: dict[str, str]) -> None:

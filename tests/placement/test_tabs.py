@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from shapely import Polygon
+from shapely import LineString, Polygon
 
 from mdlcad.network.model import PortBit
 from mdlcad.placement.anneal import anneal
@@ -27,9 +27,26 @@ def test_a_tab_in_the_corner_passes_the_rim_inside_and_steps_out_to_its_place():
     network, ports, rules = small()
     lattice = lattices(SQUARE, place_ports(network, ports, 5.0), rules, 5.0, 18)[0]
     tab = next(tab for tab in lattice.tabs if tab.bit == "A[0]")
-    assert len(tab.path) == 3
+    assert len(tab.path) == 4
     assert tab.path[-1][0] == pytest.approx(195.0)
     assert tab.x + rules.bar_width / 2 <= inside(lattice.boundary, rules).bounds[2] + 1e-6
+
+
+@pytest.mark.parametrize("place", [(39.0, 0.5, (1.0, 0.0)), (1.0, 0.0, (0.0, -1.0))])
+def test_a_tab_that_steps_aside_ends_in_a_foot_as_wide_as_its_bar_around_its_place(place):
+    network, ports, rules = small()
+    bit, half = ports[1].bit, rules.bar_width / 2
+    corner = place_ports(network, (ports[0], PortPlace(bit, "wall", *place), ports[2]), 5.0)
+    tab = next(tab for tab in lattices(SQUARE, corner, rules, 5.0, 18)[0].tabs if tab.bit == bit)
+    (from_x, from_y), (x, y) = tab.path[0], tab.path[-1]
+    along = 0 if tab.vertical else 1
+    assert (x, y)[along] == pytest.approx(5.0 * place[along])
+    assert abs((from_x, from_y)[along] - (x, y)[along]) > 0.1
+    body = LineString(tab.path).buffer(half, cap_style="flat", join_style="mitre")
+    back = tab.outside * 2 * half
+    upright, level = LineString([(x, y), (x, y - back)]), LineString([(x, y), (x - back, y)])
+    foot = (upright if tab.vertical else level).buffer(half, cap_style="flat")
+    assert body.buffer(1e-3).contains(foot)
 
 
 def test_a_tab_is_reached_over_the_columns_between():
