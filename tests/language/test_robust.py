@@ -185,11 +185,15 @@ def synthesise_or_refuse(text: str) -> None:
         for finding in error.diagnostics:
             assert finding.hint
             assert finding.line <= text.count("\n") + 1
-            assert not re.search(r"/tmp|program\.v|[Yy]osys|slang|\$proc|\$driver|'\?'", str(finding)), str(finding)
+            assert not re.search(r"/tmp|program\.v|[Yy]osys|slang|\$proc|\$driver", str(finding)), str(finding)
+            # a name that was lost on the way is a '?', unless that is what stands there
+            there = text.split("\n")[finding.line - 1][finding.column - 1 :]
+            assert "'?'" not in finding.message + finding.hint or there.startswith("?"), str(finding)
 
 
 @pytest.mark.long
 @settings(max_examples=600, deadline=None, suppress_health_check=list(HealthCheck))
 @given(mutated())
+@example(" ?/ a program that begins with what a lost name is written as")
 def test_examples_with_mistakes_through_the_synthesis(text: str) -> None:
     synthesise_or_refuse(text)
