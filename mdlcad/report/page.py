@@ -37,7 +37,7 @@ from mdlcad.signoff.summary import DesignRules
 T = TypeVar("T")
 
 PICTURES = {
-    "stack": "the device without its topmost plate, seen from a corner",
+    "stack": "the device without its cover (and without what lies on that), seen from a corner",
     "exploded": "the plates of the device, drawn apart",
     "placement": "the network of masses and springs, where it is placed",
 }

@@ -3,14 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 
-from mdlcad.parts.body import Body
+from mdlcad.parts.body import Body, BodyKind
 from mdlcad.parts.plates import plates_of
 from mdlcad.view.picture import write_picture
 
 # Exploded by this share of the device's larger side per plate: far enough apart to see between, whatever the size.
 _EXPLODE = 0.2
+
+
+def opened(bodies: Sequence[Body]) -> list[Body]:
+    """The device without its cover, which hides all else, and of two decks the lower one alone.
+
+    Screws and posts, which go on through the cover, are shown to where its upper face was.
+
+    Raises:
+        ValueError: there is no cover.
+    """
+    cover = min((body for body in bodies if body.kind is BodyKind.COVER), key=lambda body: body.z)
+    top = cover.z + cover.thickness
+    below = (body for body in bodies if body.z < cover.z)
+    return [replace(body, thickness=min(body.thickness, top - body.z)) for body in below]
 
 
 def write_views(bodies: Sequence[Body], folder: Path, progress: Callable[[str], None]) -> tuple[str, ...]:
@@ -31,8 +46,7 @@ def write_views(bodies: Sequence[Body], folder: Path, progress: Callable[[str], 
         write_picture(shown, views / f"{name}.png", from_above=from_above, lift_mm=lift_mm)
         written.append(f"views/{name}.png")
 
-    # what is on top hides all else: the cover, or of two decks the upper one's base
-    picture("stack", [body for body in bodies if body.plate != order[-1]], from_above=False)
+    picture("stack", opened(bodies), from_above=False)
     # shims and stock would hang between the plates
     apart = [body for body in bodies if body.plate in cut]
     picture("exploded", apart, from_above=False, lift_mm=lift)
