@@ -15,10 +15,11 @@ from mdlcad.signoff.extraction import Built, BuiltDevice
 from mdlcad.signoff.geometry import check_geometry
 from mdlcad.signoff.lvs import LvsResult, compare, recover
 from mdlcad.signoff.margins import find_margins, grid_of
+from mdlcad.signoff.mixtures import find_mixtures
 from mdlcad.signoff.readback import read_step
 from mdlcad.signoff.sections import read_cut
 from mdlcad.signoff.stops import stops_of
-from mdlcad.signoff.tilting import TILTING, TiltingProof, tilting_proof
+from mdlcad.signoff.tilting import TILTING, TiltingProof, stops_found, tilting_proof
 
 
 def checked(job: Job, state: State, progress: Progress) -> State:
@@ -92,6 +93,15 @@ def write_built(job: Job, state: State) -> None:
     """Write built.json, the device as the files draw it, and tilting.json, its proof with shuttles that tilt."""
     write_atomic(job.folder / "built.json", to_json(state.built))
     write_atomic(job.folder / TILTING, to_json(state.tilting))
+
+
+def find_the_mixtures(job: Job, state: State, progress: Progress) -> State:
+    """Whether the device as drawn is right if plates hold some of its shuttles from tilting."""
+    stops = stops_found(need(state.tilting))
+    drawn, network, process = need(state.built).drawn, need(state.network), stacked(job.process, state)
+    built = Built(drawn, network, need(state.sizing), state.carriers, process, stops=stops)
+    reference = build_reference(need(state.device))
+    return replace(state, mixtures=find_mixtures(built, reference, job.seed, job.workers))
 
 
 def find_the_margins(job: Job, state: State, progress: Progress) -> State:

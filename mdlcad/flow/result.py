@@ -38,6 +38,7 @@ def make_report(
         drc=state.rules.counts if state.rules else None,
         mechanics=mechanics_of(state.sizing, state.carriers, state.compensation),
         drive=state.drive,
+        mixtures=state.mixtures,
         margins=state.margins,
         extent_mm=extent_of(bodies) if bodies else None,
         plates=tuple(plates_of(bodies)) if bodies else (),

@@ -27,7 +27,9 @@ from mdlcad.scenario.result import ScenarioResult
 from mdlcad.signoff.extraction import BuiltDevice
 from mdlcad.signoff.lvs import LvsResult
 from mdlcad.signoff.margins import Margins
+from mdlcad.signoff.mixtures import Mixtures
 from mdlcad.signoff.summary import DesignRules
+from mdlcad.signoff.tilting import TiltingProof
 from mdlcad.synthesis.netlist import Netlist
 
 ARTEFACTS: dict[str, Any] = {
@@ -48,6 +50,8 @@ ARTEFACTS: dict[str, Any] = {
     "drive": DriveLoads,
     "extraction": tuple[LvsResult, Proof],
     "built": BuiltDevice,
+    "tilting": TiltingProof,
+    "mixtures": Mixtures,
     "margins": Margins,
     "report": Report,
     "result": ScenarioResult,

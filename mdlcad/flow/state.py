@@ -28,6 +28,7 @@ from mdlcad.routing.layout import Layout
 from mdlcad.signoff.extraction import BuiltDevice
 from mdlcad.signoff.lvs import LvsResult
 from mdlcad.signoff.margins import Margins
+from mdlcad.signoff.mixtures import Mixtures
 from mdlcad.signoff.summary import DesignRules
 from mdlcad.signoff.tilting import TiltingProof
 from mdlcad.synthesis.netlist import Netlist
@@ -106,6 +107,7 @@ class State:
     extracted: Proof | None = None
     tilting: TiltingProof | None = None
     built: BuiltDevice | None = None
+    mixtures: Mixtures | None = None
     margins: Margins | None = None
 
 

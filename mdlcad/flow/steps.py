@@ -28,6 +28,7 @@ from mdlcad.flow.outcome import (
     export,
     extract,
     find_the_margins,
+    find_the_mixtures,
     restore_extraction,
     write_built,
     write_guide,
@@ -42,6 +43,7 @@ from mdlcad.network.model import Network
 from mdlcad.parts.store import Parts, records_of
 from mdlcad.proof.outcome import Proof
 from mdlcad.signoff.margins import Margins
+from mdlcad.signoff.mixtures import Mixtures
 from mdlcad.signoff.summary import DesignRules
 from mdlcad.synthesis.netlist import Netlist
 
@@ -201,6 +203,16 @@ STEPS: tuple[Step, ...] = (
         restore_extraction,
         ("process", "seed"),
         draw=write_built,
+    ),
+    Step(
+        "mixtures",
+        ("device", "network", "sizing", "placement", "carriers", "tilting", "built"),
+        ("mixtures",),
+        find_the_mixtures,
+        lambda s: need(s.mixtures).words(),
+        lambda s: to_json(s.mixtures),
+        from_artefact("mixtures", Mixtures),
+        ("process", "seed"),
     ),
     Step(
         "margins",

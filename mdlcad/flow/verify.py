@@ -40,6 +40,7 @@ from mdlcad.signoff.extraction import Built, BuiltDevice
 from mdlcad.signoff.files import check_bodies
 from mdlcad.signoff.geometry import check_geometry
 from mdlcad.signoff.lvs import compare, recover
+from mdlcad.signoff.mixtures import MIXTURES, Mixtures, find_mixtures
 from mdlcad.signoff.readback import read_step
 from mdlcad.signoff.sections import read_cut
 from mdlcad.signoff.stops import stops_of
@@ -151,6 +152,10 @@ def _verify(folder: Path, report: Report, workers: int, say: Callable[[str], Non
         words = [str(item) for item in tilting.first_mismatches] or ["nothing was checked"]
         kept = load(folder, TILTING, TiltingProof) == tilting_proof(tilting, stops, process, sizing.law)
         step("tilting", ([] if tilting.holds else words) + ([] if kept else [f"{TILTING}: not what the files draw"]))
+        mixtures = find_mixtures(loose, reference, report.seed, workers)
+        say(f"{'mixtures':<11} {mixtures.words()}")
+        same = load(folder, MIXTURES, Mixtures) == mixtures
+        broken += [] if same else [f"mixtures: {MIXTURES}: not what the files draw"]
     step("page", _check_page(folder))
     return broken
 

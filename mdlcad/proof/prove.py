@@ -78,7 +78,7 @@ def prove(
         bad = [int(lane) for lane in np.flatnonzero(comparison.wrong < length)]
         bad.sort(key=lambda lane: (int(comparison.wrong[lane]), lane))
         first = tuple(describe(reference, itinerary, comparison, network.tick, lane) for lane in bad[:_REPORTED])
-        checked, visited = _count(itinerary, np.minimum(comparison.wrong + 1, length))
+        checked, visited = _met(itinerary, np.minimum(comparison.wrong + 1, length))
         mismatches, simulated, tick_cycle = len(bad), length * lanes, timing.tick_cycle
         margin, margin_mass = comparison.margin, comparison.margin_mass
         peaks = dict(zip(system.names, map(float, comparison.peak), strict=True))
@@ -115,7 +115,13 @@ def prove(
     )
 
 
-def _count(itinerary: Itinerary, lengths: NDArray[np.int64]) -> tuple[int, int]:
+def transitions_met(itinerary: Itinerary) -> int:
+    """Distinct transitions that the itinerary makes."""
+    length, lanes, _ = itinerary.inputs.shape
+    return _met(itinerary, np.full(lanes, length))[0]
+
+
+def _met(itinerary: Itinerary, lengths: NDArray[np.int64]) -> tuple[int, int]:
     """Distinct transitions and distinct states among the first ``lengths[lane]`` decisions of every lane."""
     done = np.arange(len(itinerary.inputs))[:, None] < lengths
     states, inputs = itinerary.states[:-1][done], itinerary.inputs[done]

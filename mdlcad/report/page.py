@@ -139,13 +139,18 @@ def verdict_of(report: Report) -> Verdict:
             if known is None
         ]
         return Verdict("partial", f"Stopped after its stage “{last}”, as asked", tuple(lacking))
+    between, mixtures = "", report.mixtures
+    if mixtures is not None and mixtures.wrong:
+        between = f", but {mixtures.wrong} of {mixtures.tried} mixtures of held and tilting shuttles are wrong"
     warned = sum((report.drc or {}).values())
     more: tuple[str, ...] = ()
+    if mixtures is not None and between:
+        more += (f"right with all shuttles held by plates and with all tilting, but between: {mixtures.words()}",)
     if warned:
         more += (f"{warned} warning{'s' if warned > 1 else ''} of the design rules, see below",)
     if report.margins is not None and not report.margins.machine_holds:
         more += (f"as drawn it works, but fabrication may spoil it: {report.margins.words()}",)
-    return Verdict("good", "All of it holds", more)
+    return Verdict("partial" if between else "good", f"All of it holds{between}", more)
 
 
 def plate_drawings(folder: Path, report: Report) -> list[PlateDrawing]:

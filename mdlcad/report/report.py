@@ -10,6 +10,7 @@ from msgspec import UNSET, UnsetType
 from mdlcad.mechanics.drive import DriveLoads
 from mdlcad.parts.bom import Bom
 from mdlcad.signoff.margins import Margins
+from mdlcad.signoff.mixtures import Mixtures
 
 
 @dataclass(frozen=True, slots=True)
@@ -166,6 +167,7 @@ class Report:
         stopped: None if all stages that were asked for (``--to``) ran.
         failures: what does not hold, in words with numbers; empty if all that was checked holds.
         unit_plates: how many; second_plate: why there are two.
+        mixtures: whether the device as drawn is right if plates hold some of its shuttles from tilting.
         margins: largest errors of dimensions at which the device as drawn still proves right.
         files: SHA-256 by path, of every file but report.json itself and report.html, which is made from it.
     """
@@ -193,6 +195,7 @@ class Report:
     # later than the first reports, which can still be read
     tilting: Behaviour | None = None
     tilts: TiltReport | None = None
+    mixtures: Mixtures | None = None
     stopped: Stopped | None = None
     failures: tuple[str, ...] = ()
     bom: Bom | None = None

@@ -15,6 +15,7 @@ from mdlcad.proof.outcome import Proof
 from mdlcad.report.report import Report
 from mdlcad.signoff.drc import Finding
 from mdlcad.signoff.margins import Margins
+from mdlcad.signoff.mixtures import Mixtures
 from mdlcad.signoff.summary import DesignRules
 
 # What a rule of the design rules asks, and the unit of its value. A rule that is not here is shown by its name alone.
@@ -173,6 +174,7 @@ def margin_rows(
             )
         right = f"{found.transitions_checked - found.mismatches} of {found.transitions_checked}"
         rows.append(Margin("tilting", right, "all", about, found.mismatches == 0))
+    rows += _mixture_rows(report.mixtures)
     mechanics = report.mechanics
     if mechanics is None or process is None or sizing is None:
         return rows
@@ -202,6 +204,24 @@ def margin_rows(
         )
         rows.append(Margin("k left", f"{first:.2f}, {middle:.3f}, {last:.2f}", "", about, None))
     return rows
+
+
+def _mixture_rows(mixtures: Mixtures | None) -> list[Margin]:
+    """What becomes of the device where plates hold some shuttles only."""
+    if mixtures is None:
+        return []
+    drawn = "all there are" if mixtures.exhaustive else f"{mixtures.by_phase} by phase, the others by chance"
+    about = (
+        "mixtures right of those tried, in which plates hold some shuttles from tilting and others tilt: "
+        f"{drawn}; {mixtures.transitions_checked} of "
+        f"{mixtures.transitions_total} transitions each"
+    )
+    if mixtures.weakest:
+        about += (
+            f"; {mixtures.weakest} is the first to read wrong in {mixtures.weakest_count}: {mixtures.weakest_words}"
+        )
+    right = f"{mixtures.tried - mixtures.wrong} of {mixtures.tried}"
+    return [Margin("mixtures", right, "all", about, mixtures.wrong == 0)]
 
 
 def _fabrication_rows(margins: Margins | None) -> list[Margin]:

@@ -337,14 +337,14 @@ class Built:
     def _tilts(self, stops: Mapping[str, Stop]) -> Tilts:
         """How the shuttles of the device as drawn tilt; its errors do not change that."""
         place, length = {name: index for index, name in enumerate(self._structure.names)}, self._scale.length
-        masses, none = np.zeros((7, len(place))), np.zeros(1)  # K, stops, height and stiffness of the bias, tab, rub
+        masses, none = np.zeros((5, len(place))), np.zeros(1)  # K, height and stiffness of the bias, tab, rub
+        stop = np.array([(stops[name].low, stops[name].high) for name in place]).T[:, :, None]
         masses[0] = self._shuttle_tilt / (self._scale.stiffness * length**2)
         for name, at in place.items():
-            masses[1:3, at] = stops[name].low, stops[name].high
-            masses[5, at] = self._drawn.tabs.get(name, 0.0) / length
-        masses[6] = self._rubbing
+            masses[3, at] = self._drawn.tabs.get(name, 0.0) / length
+        masses[4] = self._rubbing
         for leaf, table in zip(self._drawn.biases, self._biases, strict=True):
-            masses[3:5, place[leaf.mass]] = leaf.lift / length, _at(table, none)[1, 0]
+            masses[1:3, place[leaf.mass]] = leaf.lift / length, _at(table, none)[1, 0]
         entries = np.zeros((3, len(self._entries)))
         owners = np.repeat(np.arange(len(place)), np.diff(self._structure.row_start))
         for entry, (index, owner) in enumerate(zip(self._entries, owners, strict=True)):
@@ -353,7 +353,7 @@ class Built:
             low, high = (lift / length for lift in item.lifts)
             ends = (low, high, source) if place[item.source] == owner else (high, low, target)
             entries[:, entry] = ends
-        return Tilts(*masses, *entries)
+        return Tilts(masses[0], *stop, *masses[1:], *entries)
 
     def _friction(self) -> dict[str, Bound]:
         """Bound of dry friction (Coulomb) over x, by mass, in units of F0.

@@ -10,22 +10,16 @@ lane of one run. The work is bounded: ``_ROUNDS_UNIFORM`` + ``_ROUNDS_RANDOM`` +
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mdlcad.mechanics import Process
 from mdlcad.proof.behaviour import Behaviour
-from mdlcad.proof.compare import compare, stimulus_of
-from mdlcad.proof.itinerary import Itinerary, make_itinerary
-from mdlcad.proof.prove import SENSOR_FORCE
-from mdlcad.proof.spread import first_slip
-from mdlcad.proof.timing import NoTick, Timing, find_timing
+from mdlcad.proof.itinerary import make_itinerary
 from mdlcad.signoff.extraction import Built, Errors
-from mdlcad.simulation.decode import decode, instants
-from mdlcad.simulation.run import Watch, simulate, steps_for
-from mdlcad.simulation.system import System
+from mdlcad.signoff.trial import Trial
 
 SAMPLES = 16
 _ROUNDS_UNIFORM = 3
@@ -128,68 +122,20 @@ class _Trial:
     """The walk that every device is put through."""
 
     def __init__(self, built: Built, reference: Behaviour, decisions: int, seed: int, workers: int) -> None:
-        self._built, self._reference, self._workers = built, reference, workers
-        self._steps = steps_for(built.system)
-        walks = make_itinerary(reference, decisions, seed, exhaustive=False, lanes=1)
-        first = slice(0, 1)  # of several, where no walk reaches all states
-        self._walk = replace(
-            walks, inputs=walks.inputs[:, first], states=walks.states[:, first], outputs=walks.outputs[:, first]
-        )
-        self.decisions = len(self._walk.inputs)
-        try:
-            self._timing: Timing | None = find_timing(built.network, built.system, self._steps)
-        except NoTick:
-            self._timing = None
+        self._built = built
+        walks = make_itinerary(reference, decisions, seed, exhaustive=False, lanes=1)  # several, where no walk reaches
+        self._trial = Trial(built.network, reference, built.system, walks, workers)  # all states: the first is taken
+        self.decisions = self._trial.decisions
 
     def right(self, errors: Errors) -> NDArray[np.bool_]:
         """bool[L]: which of the devices with these errors make every decision right."""
-        lanes = errors.beams.shape[1]
-        if self._timing is None:
-            return np.zeros(lanes, dtype=bool)
-        walk = self._side_by_side(lanes)
-        comparison = compare(
-            self._built.network,
-            self._reference,
-            self._built.with_errors(errors),
-            walk,
-            self._timing,
-            sensor_force=SENSOR_FORCE,
-            steps_per_period=self._steps,
-            workers=self._workers,
-        )
-        return np.asarray(comparison.wrong == self.decisions)
+        first = np.zeros(errors.beams.shape[1], dtype=np.int64)
+        return np.asarray(self._trial.first_wrong(self._built.with_errors(errors), first) == self.decisions)
 
     def slips(self, errors: Errors, wrong: NDArray[np.bool_]) -> Counter[str]:
         """Of the devices that go wrong, how often each mass is the first to read otherwise than as drawn."""
-        if self._timing is None:
-            return Counter()
-        device = self._built.with_errors(errors)
-        read, drawn = self._bits(device, len(wrong)), self._bits(self._built.system, 1)
-        found = (first_slip(drawn, read[:, :, [lane]], device) for lane in np.flatnonzero(wrong))
-        return Counter(slip for slip in found if slip is not None)
-
-    def _bits(self, system: System, lanes: int) -> NDArray[np.uint8]:
-        if self._timing is None:
-            raise AssertionError("a device without a tick has no bits")
-        masses, walk = np.arange(len(system.names)), self._side_by_side(lanes)
-        run = simulate(
-            system,
-            stimulus_of(self._built.network, self._reference, system, walk, self._timing, SENSOR_FORCE, self._steps),
-            self.decisions * self._timing.period * self._steps,
-            watch=Watch(masses, instants(system, masses, self._steps)),
-            steps_per_period=self._steps,
-            workers=self._workers,
-        )
-        return decode(system, masses, run.readings)
-
-    def _side_by_side(self, lanes: int) -> Itinerary:
-        walk = self._walk
-        return replace(
-            walk,
-            inputs=np.repeat(walk.inputs, lanes, axis=1),
-            states=np.repeat(walk.states, lanes, axis=1),
-            outputs=np.repeat(walk.outputs, lanes, axis=1),
-        )
+        found = self._trial.slips(self._built.with_errors(errors), np.zeros(len(wrong), dtype=np.int64), self.decisions)
+        return Counter(slip for slip, bad in zip(found, wrong, strict=True) if bad and slip is not None)
 
 
 def _uniform(trial: _Trial, built: Built, most: float) -> tuple[float, float]:

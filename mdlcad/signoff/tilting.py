@@ -60,6 +60,11 @@ def rubbing(process: Process, law: UnitLaw) -> float:
     return process.stack.friction * law.shuttle_tilt / (4.0 * process.stack.z_gap) / law.force_unit
 
 
+def stops_found(found: TiltingProof) -> dict[str, Stop]:
+    """The stops of every shuttle, by mass, as they were found for this proof."""
+    return {item.mass: Stop(item.low, item.high) for item in found.shuttles}
+
+
 def tilting_proof(proof: Proof, stops: Mapping[str, Stop], process: Process, law: UnitLaw) -> TiltingProof:
     """What is kept of ``proof``, in which shuttles tilted until they met their ``stops``."""
     if proof.tilts is UNSET:

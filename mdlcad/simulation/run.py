@@ -137,7 +137,7 @@ def simulate(
         if system.devices is not None:
             masses, springs = system.devices.block(start)
             tilts = system.devices.tilts
-            tilting, lifts = (tilts or held(n, len(system.column))).numbers()
+            tilting, lifts = (tilts or held(n, len(system.column))).block(start)
             advance_devices(
                 start,
                 x,
@@ -217,7 +217,9 @@ def _blocks(lanes: int, masses: int) -> list[tuple[int, int]]:
 def _check(system: System, stimulus: Stimulus, watch: Watch, steps: int, steps_per_period: int) -> None:
     n = len(system.names)
     intervals, driven, lanes = stimulus.force.shape
-    if system.devices is not None and (system.devices.count not in (1, lanes) or len(system.latch_mass)):
+    devices = system.devices
+    counts = [] if devices is None else [devices.count, devices.tilts.count if devices.tilts is not None else 1]
+    if any(count not in (1, lanes) for count in counts) or (devices is not None and len(system.latch_mass)):
         raise ValueError("devices are one for all lanes or one a lane, and have no latches")
     if lanes < 1 or intervals < 1 or driven != len(stimulus.masses):
         raise ValueError("a stimulus needs at least one lane and one interval, and a force for every driven mass")

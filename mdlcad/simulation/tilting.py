@@ -26,13 +26,13 @@ SWEEPS = 2
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Tilts:
-    """How n shuttles with e coupling entries (in the order of ``System``) tilt, the same in all devices.
+    """How n shuttles with e coupling entries (in the order of ``System``) tilt in L devices; L = 1 stands for all.
 
     Angles are in rad, heights above the shuttle's middle in X0.
 
     Attributes:
         stiffness: float[n], K, in F0 X0 per rad.
-        low, high: float[n], the angles that it cannot pass, low at most 0 and high at least.
+        low, high: float[n, L], the angles that it cannot pass, low at most 0 and high at least; both 0: it is held.
         bias_height, bias_stiffness: float[n], of its bias leaf; the leaf's force is q and its stiffness times u.
         force_height: float[n], of where forces from outside act.
         rub: float[n], what plates brake it with at the most, in F0 over the square of the angle without stops.
@@ -51,12 +51,18 @@ class Tilts:
     other: Floats
     self_stiffness: Floats
 
-    def numbers(self) -> tuple[tuple[Floats, ...], tuple[Floats, ...]]:
-        """Of the masses and of the entries, as ``settle`` takes them."""
+    @property
+    def count(self) -> int:
+        """L."""
+        return int(self.low.shape[1])
+
+    def block(self, start: int) -> tuple[tuple[Floats, ...], tuple[Floats, ...]]:
+        """Of masses and entries, as ``settle`` takes them; stops are float[n, BLOCK], of lanes from ``start`` on."""
+        lanes = np.minimum(np.arange(start, start + BLOCK), self.count - 1)
         masses = (
             self.stiffness,
-            self.low,
-            self.high,
+            np.ascontiguousarray(self.low[:, lanes]),
+            np.ascontiguousarray(self.high[:, lanes]),
             self.bias_height,
             self.bias_stiffness,
             self.force_height,
@@ -67,8 +73,8 @@ class Tilts:
 
 def held(masses: int, entries: int) -> Tilts:
     """Shuttles of which none tilts: every height is zero."""
-    none, flat = np.zeros(masses), np.zeros(entries)
-    return Tilts(np.ones(masses), none, none, none, none, none, none, flat, flat, flat)
+    none, flat, stop = np.zeros(masses), np.zeros(entries), np.zeros((masses, 1))
+    return Tilts(np.ones(masses), stop, stop, none, none, none, none, flat, flat, flat)
 
 
 @kernel
@@ -116,4 +122,4 @@ def settle(
                     slope[lane] += h * h * (s + 3.0 * (apart[e, lane] * d * d + together[e, lane] * t * t))
             for lane in range(BLOCK):
                 tip[i, lane] = angle[i, lane] + moment[lane] / stiffness[i]
-                angle[i, lane] = min(max(angle[i, lane] + moment[lane] / slope[lane], low[i]), high[i])
+                angle[i, lane] = min(max(angle[i, lane] + moment[lane] / slope[lane], low[i, lane]), high[i, lane])

@@ -139,7 +139,7 @@ def test_shuttles_that_tilt_have_heights_and_stops_as_drawn(device: Device, buil
     assert {item.mass: item.lift for item in drawn.biases} == pytest.approx(dict(lifts.biases))
     names, x0 = loose.system.names, process.unit.throw_unit
     assert np.abs(tilts.own).max() == pytest.approx(max(max(map(abs, pair)) for pair in lifts.couplings.values()) / x0)
-    assert list(tilts.high) == [stops[name].high for name in names]
+    assert list(tilts.high[:, 0]) == [stops[name].high for name in names]
     # the larger the gaps, the farther a shuttle can tilt
     wide = replace(process, stack=replace(process.stack, z_gap=2.0 * process.stack.z_gap))
     assert rubbing(wide, device.sizing.law) == pytest.approx(rubbing(process, device.sizing.law) / 2.0)
