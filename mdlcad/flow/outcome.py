@@ -8,18 +8,15 @@ from mdlcad.artefact import load, to_json, write_atomic
 from mdlcad.flow.state import Job, State, need, stacked
 from mdlcad.flow.step import Progress
 from mdlcad.proof.outcome import Proof
-from mdlcad.proof.prove import prove
 from mdlcad.proof.reference import build_reference
-from mdlcad.signoff.drawn import measure_device
+from mdlcad.signoff.device import prove_device
 from mdlcad.signoff.extraction import Built, BuiltDevice
 from mdlcad.signoff.geometry import check_geometry
 from mdlcad.signoff.lvs import LvsResult, compare, recover
 from mdlcad.signoff.margins import find_margins, grid_of
 from mdlcad.signoff.mixtures import find_mixtures
 from mdlcad.signoff.readback import read_step
-from mdlcad.signoff.sections import read_cut
-from mdlcad.signoff.stops import stops_of
-from mdlcad.signoff.tilting import TILTING, TiltingProof, stops_found, tilting_proof
+from mdlcad.signoff.tilting import TILTING, TiltingProof, stops_found
 
 
 def checked(job: Job, state: State, progress: Progress) -> State:
@@ -69,17 +66,19 @@ def extract(job: Job, state: State, progress: Progress) -> State:
     found = read_step(job.folder / f"{network.design}.step")
     recovered = recover(found)
     result = compare(recovered, network)
-    process = stacked(job.process, state)
-    drawn = measure_device(found, read_cut(job.folder, process), recovered, process)
-    built = Built(drawn, network, need(state.sizing), state.carriers, process)
-    reference = build_reference(need(state.device))
-    extracted = prove(built.network, reference, seed=job.seed, workers=job.workers, built=built.system)
-    sizing = need(state.sizing)
-    stops = stops_of(found, recovered, drawn.units, process, sizing.rules)
-    loose = Built(drawn, network, sizing, state.carriers, process, stops=stops)
-    proof = prove(loose.network, reference, seed=job.seed, workers=job.workers, built=loose.system)
-    tilting = tilting_proof(proof, stops, process, sizing.law)
-    return replace(state, lvs=result, extracted=extracted, tilting=tilting, built=built.record())
+    device = prove_device(
+        job.folder,
+        found,
+        recovered,
+        network,
+        need(state.sizing),
+        state.carriers,
+        stacked(job.process, state),
+        build_reference(need(state.device)),
+        job.seed,
+        job.workers,
+    )
+    return replace(state, lvs=result, extracted=device.extracted, tilting=device.tilting, built=device.built)
 
 
 def restore_extraction(job: Job, state: State, files: tuple[str, ...]) -> State:

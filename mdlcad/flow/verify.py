@@ -29,22 +29,21 @@ from mdlcad.parts.store import Parts, bodies_of, records_of
 from mdlcad.placement.check_grid import check_grid
 from mdlcad.placement.placement import Placement
 from mdlcad.placement.unit_grid import GridPlacement
+from mdlcad.proof.outcome import Proof
 from mdlcad.proof.prove import prove
 from mdlcad.proof.reference import build_reference
 from mdlcad.report.guide import GUIDE, guide
 from mdlcad.report.report import Report
 from mdlcad.routing.decks import process_of
 from mdlcad.routing.layout import Layout
-from mdlcad.signoff.drawn import measure_device
-from mdlcad.signoff.extraction import Built, BuiltDevice
+from mdlcad.signoff.device import prove_device
+from mdlcad.signoff.extraction import BuiltDevice
 from mdlcad.signoff.files import check_bodies
 from mdlcad.signoff.geometry import check_geometry
 from mdlcad.signoff.lvs import compare, recover
 from mdlcad.signoff.mixtures import MIXTURES, Mixtures, find_mixtures
 from mdlcad.signoff.readback import read_step
-from mdlcad.signoff.sections import read_cut
-from mdlcad.signoff.stops import stops_of
-from mdlcad.signoff.tilting import TILTING, TiltingProof, tilting_proof
+from mdlcad.signoff.tilting import TILTING, TiltingProof
 from mdlcad.synthesis.netlist import Netlist
 
 
@@ -89,7 +88,7 @@ def _verify(folder: Path, report: Report, workers: int, say: Callable[[str], Non
     device, network = load(folder, "device.json", Device), load(folder, "network.json", Network)
     reference = build_reference(device)
     proof = prove(network, reference, seed=report.seed, workers=workers)
-    step("behaviour", [] if proof.holds else [str(item) for item in proof.first_mismatches] or ["nothing was checked"])
+    step("behaviour", _wrong(proof))
     if placed_only:
         mapped = map_netlist(load(folder, "netlist.json", Netlist), recorded_library(folder))
         step("mapping", [] if mapped == network else [f"network.json: not what {CELLS_FILE} makes of netlist.json"])
@@ -138,26 +137,24 @@ def _verify(folder: Path, report: Report, workers: int, say: Callable[[str], Non
     lvs = compare(recovered, network)
     step("lvs", list(lvs.differences))
     if lvs.matched:
-        drawn = measure_device(found, read_cut(folder, process), recovered, process)
-        built = Built(drawn, network, sizing, carriers, process)
-        extracted = prove(built.network, reference, seed=report.seed, workers=workers, built=built.system)
-        words = [str(item) for item in extracted.first_mismatches] or ["nothing was checked"]
-        kept = load(folder, "built.json", BuiltDevice) == built.record()
-        step(
-            "extracted", ([] if extracted.holds else words) + ([] if kept else ["built.json: not what the files draw"])
+        proved = prove_device(
+            folder, found, recovered, network, sizing, carriers, process, reference, report.seed, workers
         )
-        stops = stops_of(found, recovered, drawn.units, process, sizing.rules)
-        loose = Built(drawn, network, sizing, carriers, process, stops=stops)
-        tilting = prove(loose.network, reference, seed=report.seed, workers=workers, built=loose.system)
-        words = [str(item) for item in tilting.first_mismatches] or ["nothing was checked"]
-        kept = load(folder, TILTING, TiltingProof) == tilting_proof(tilting, stops, process, sizing.law)
-        step("tilting", ([] if tilting.holds else words) + ([] if kept else [f"{TILTING}: not what the files draw"]))
-        mixtures = find_mixtures(loose, reference, report.seed, workers)
+        kept = load(folder, "built.json", BuiltDevice) == proved.built
+        step("extracted", _wrong(proved.extracted) + ([] if kept else ["built.json: not what the files draw"]))
+        kept = load(folder, TILTING, TiltingProof) == proved.tilting
+        step("tilting", _wrong(proved.tilting.proof) + ([] if kept else [f"{TILTING}: not what the files draw"]))
+        mixtures = find_mixtures(proved.loose, reference, report.seed, workers)
         say(f"{'mixtures':<11} {mixtures.words()}")
         same = load(folder, MIXTURES, Mixtures) == mixtures
         broken += [] if same else [f"mixtures: {MIXTURES}: not what the files draw"]
     step("page", _check_page(folder))
     return broken
+
+
+def _wrong(proof: Proof) -> list[str]:
+    """What does not hold in a proof, in words."""
+    return [] if proof.holds else [str(item) for item in proof.first_mismatches] or ["nothing was checked"]
 
 
 def _is_placed_only(folder: Path, report: Report) -> bool:
