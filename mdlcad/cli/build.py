@@ -6,9 +6,10 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from mdlcad.cli.kinds import Commands, bed, count, jobs, length, say, seed, verdict
+from mdlcad.cli.kinds import Commands, bed, count, jobs, length, say, seed, verdict, warn
 
 if TYPE_CHECKING:
+    from mdlcad.errors import Diagnostic
     from mdlcad.placement.placers import Placer
 
 PLACERS = ("anneal", "paper")
@@ -128,8 +129,23 @@ def _run(options: argparse.Namespace) -> int:
         ),
         say,
     )
+    if options.file.is_file():
+        warn(_idle(options.file, place))
     say(f"written to {place}")
     return verdict(broken)
+
+
+def _idle(source: Path, place: Path) -> list[Diagnostic]:
+    """Of a build from ``source`` in ``place``, the sensors that its behaviour does not use."""
+    from mdlcad.artefact import load
+    from mdlcad.language import Device, placed
+    from mdlcad.synthesis.netlist import Netlist
+    from mdlcad.synthesis.unused import unused_sensors
+
+    if not (place / "netlist.json").is_file():
+        return []
+    found = unused_sensors(load(place, "device.json", Device), load(place, "netlist.json", Netlist))
+    return placed(found, source)
 
 
 def _placer(options: argparse.Namespace) -> Placer:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from mdlcad.cli.kinds import HOLDS, Commands, say
+from mdlcad.cli.kinds import HOLDS, Commands, say, warn
 
 
 def register(commands: Commands[argparse.ArgumentParser]) -> None:
@@ -17,13 +17,15 @@ def register(commands: Commands[argparse.ArgumentParser]) -> None:
 
 def _run(options: argparse.Namespace) -> int:
     from mdlcad.errors import InputError
-    from mdlcad.language import anchored, read_device
+    from mdlcad.language import anchored, placed, read_device
     from mdlcad.synthesis import synthesise
+    from mdlcad.synthesis.unused import unused_sensors
 
     device = read_device(options.file)
     try:
-        synthesise(device)
+        netlist = synthesise(device)
     except InputError as problem:
         raise anchored(problem, options.file) from None
+    warn(placed(unused_sensors(device, netlist), options.file))
     say(f"{options.file}: {device.name}: no errors")
     return HOLDS

@@ -5,7 +5,12 @@ from __future__ import annotations
 import argparse
 import math
 import sys
+from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from mdlcad.errors import Diagnostic
 
 HOLDS, FAILS, UNUSABLE = 0, 1, 2
 
@@ -55,6 +60,12 @@ def count(text: str) -> int:
 def say(line: str) -> None:
     """One line to the user, at once."""
     print(line, flush=True)
+
+
+def warn(found: Sequence[Diagnostic]) -> None:
+    """What is seldom meant in a user's file, though it can be used."""
+    for item in found:
+        print(item, file=sys.stderr)
 
 
 def progress(words: str) -> None:
