@@ -99,7 +99,7 @@ def _sheet(
     _flexures(pen, network, placement, layout, rules, lanes, nets)
     _tabs(pen, layout, rules, lanes, nets)
     _hubs(pen, placement, rules, nets)
-    _ports(pen, network, placement, grow)
+    _ports(pen, network, placement, layout, grow)
     key = Pen(0.0, 0.0)
     height = top - foot + grow * write_key(key, width / grow, grow, network, rules)
     pen.open(f'transform="translate(0 {number(top - foot)}) scale({number(grow)})"')
@@ -239,14 +239,18 @@ def _hubs(pen: Pen, placement: Placement, rules: LayoutRules, nets: dict[str, st
         )  # fmt: skip
 
 
-def _ports(pen: Pen, network: Network, placement: Placement, grow: float) -> None:
+def _ports(pen: Pen, network: Network, placement: Placement, layout: Layout, grow: float) -> None:
     sensors = {port.bit for port in network.sensors}
+    tips = {tab.bit: tab.path[-1] for tab in layout.tabs}
     for port in placement.ports:
         # along the tab, which leaves level or upright, whichever is nearer to the wall's normal
         x, y = port.normal
         x, y = (0.0, math.copysign(1.0, y)) if abs(y) > abs(x) else (math.copysign(1.0, x), 0.0)
         anchor = "middle" if y else "start" if x > 0 else "end"
-        reach = (13.0 if anchor == "middle" else 9.0) * grow
+        # in a row as far as the tabs reach, or beyond the tip of one that is longer, as in a slanted wall
+        tip_x, tip_y = tips.get(port.bit, (port.x, port.y))
+        beyond = (tip_x - port.x) * x + (tip_y - port.y) * y
+        reach = max(13.0 * grow, beyond + 3.5 * grow) if anchor == "middle" else max(9.0 * grow, beyond + 1.5 * grow)
         sensor = port.bit in sensors
         tip, base = (2.2, 6.4) if sensor else (6.4, 2.2)
         corners = [

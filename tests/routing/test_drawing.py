@@ -1,5 +1,7 @@
 """The drawing of placement and routing: every piece named, every plate told apart, legible however large."""
 
+import math
+from dataclasses import replace
 from itertools import pairwise
 from xml.etree import ElementTree
 
@@ -59,6 +61,32 @@ def test_the_heading_grows_with_the_device(large):
         return float(heading.get("font-size")) / float(root.get("viewBox").split()[2])
 
     assert share(drawn(*large)) > 0.5 * share(drawn(network, placement, layout, rules))
+
+
+@pytest.mark.parametrize("longer", [0.0, 5.0])
+def test_names_of_ports_stand_beyond_their_tabs(longer):
+    network, rules, placement, layout = good()
+    tabs = []
+    for tab in layout.tabs:
+        (from_x, from_y), (x, y) = tab.path[-2:]
+        on = (x, y + math.copysign(longer, y - from_y)) if x == from_x else (x + math.copysign(longer, x - from_x), y)
+        tabs.append(replace(tab, path=(*tab.path[:-1], on)))
+    root = drawn(network, placement, replace(layout, tabs=tuple(tabs)), rules)
+    names = {item.text: item for item in root.iter(f"{SVG}text") if item.get("class") == "lt"}
+    assert tabs and {tab.bit for tab in tabs} <= set(names)
+    for item in root.iter(f"{SVG}rect"):
+        title = item.findtext(f"{SVG}title") or ""
+        if title.startswith("tab of "):
+            name = names[title.split()[2]]
+            x, y, width, height = (float(item.get(key, "")) for key in ("x", "y", "width", "height"))
+            at, line, size = (float(name.get(key, "")) for key in ("x", "y", "font-size"))
+            # capitals are some 0.75 of the size high
+            apart = {
+                "start": at - (x + width),
+                "end": x - at,
+                "middle": max(line - 0.75 * size - (y + height), y - line),
+            }
+            assert apart[name.get("text-anchor", "")] > 0.0, title
 
 
 def test_no_two_plates_share_a_lane_or_a_colour():
