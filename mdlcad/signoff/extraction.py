@@ -4,40 +4,29 @@ Measured: walls, spans, heights and legs of every flexure, how far series spring
 (``measure``). Through the reduced models of ``mechanics`` they become stiffnesses, self terms, biases and what is
 beyond them. A coupler is in a row with its carrier. Taken as given: moduli (process), the clock's stroke (sizing).
 
-Errors of fabrication go the same way: the numbers are tabulated over a wall that is thinner or thicker than drawn.
+Errors of fabrication go the same way: numbers of walls that are thinner or thicker than drawn are from
+``flexure_tables``.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import astuple, dataclass, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mdlcad.errors import SignoffError
 from mdlcad.mechanics import Process, Sizing
-from mdlcad.mechanics.fit import Scale, fit_unit
-from mdlcad.mechanics.flexure import signal_matrix
-from mdlcad.mechanics.leaves import LeafKind, trim
-from mdlcad.mechanics.preload import RIGID_CARRIER
-from mdlcad.mechanics.reduced import UnitNumbers
-from mdlcad.mechanics.strains import reach_at
-from mdlcad.mechanics.unit import clock_swing
+from mdlcad.mechanics.fit import Scale
+from mdlcad.mechanics.leaves import trim
 from mdlcad.network.model import Coupling, Network
 from mdlcad.parts.stiffness import CarrierStiffness
-from mdlcad.signoff.drawn import BiasDrawn, CouplerDrawn, Drawn
-from mdlcad.signoff.measure import UnitSeen, chain_of_leaf, thickened
+from mdlcad.signoff.drawn import Drawn
+from mdlcad.signoff.flexure_tables import FlexureTables, values_at
 from mdlcad.signoff.numbers import (
-    BiasNumbers,
     Bound,
-    LeafLaw,
     SpringNumbers,
-    bias_numbers,
-    leaf_law,
-    post_rub,
-    spring_numbers,
-    unit_numbers,
 )
 from mdlcad.signoff.stops import Stop
 from mdlcad.signoff.tilting import rubbing
@@ -135,12 +124,7 @@ class Built:
         Raises:
             SignoffError: the geometry lacks a unit, or a flexure finds no equilibrium at its farthest.
         """
-        self._grid = np.array(grid)
         self._scale = Scale(sizing.law.stiffness_unit, process.unit.throw_unit)
-        self._throw = sizing.rules.throw
-        self._swing = clock_swing(network, sizing.law)
-        peaks = {unit.mass: unit.amplitude / process.unit.throw_unit for unit in sizing.units}
-        self._reaches = [process.unit.throw_unit * max(reach_at(network, peaks, p).values()) for p in (0.0, 1.0, 2.0)]
         self._mu = process.stack.friction
         self._drawn = drawn
         self._names = [mass.name for mass in network.masses]
@@ -150,11 +134,11 @@ class Built:
         self._stiff = {item.coupling: item.stiffness for item in carriers}
         self._stops, self._shuttle_tilt, self._rubbing = stops, sizing.law.shuttle_tilt, rubbing(process, sizing.law)
         try:
-            self._units = self._unit_tables()
-            self._couplers = self._coupler_tables()
-            self._biases = self._bias_tables()
+            tables = FlexureTables(drawn, network, sizing, self._stiff, process, grid)
         except ArithmeticError as error:
             raise SignoffError(f"a flexure as drawn cannot be bent as far as it must: {error}") from error
+        self._units, self._couplers, self._biases = tables.units, tables.couplers, tables.biases
+        self.rubs, self._slides = tables.rubs, tables.slides
         self.friction = self._friction()
         self._shape(network)
 
@@ -177,7 +161,7 @@ class Built:
             CouplerBuilt(
                 item.name,
                 self._stiff.get(item.name, 0.0),
-                SpringNumbers(*(trim(float(v)) for v in _at(table, none)[:, 0])),
+                SpringNumbers(*(trim(float(v)) for v in values_at(table, none)[:, 0])),
                 trim(rub),
             )
             for item, table, rub in zip(self._drawn.couplers, self._couplers, self.rubs, strict=True)
@@ -194,103 +178,20 @@ class Built:
         """Devices like this one, each with its errors."""
         return replace(self.system, devices=self._devices(errors))
 
-    # ---- tables: numbers over the grid of errors, as polynomials through its points
-
-    def _polynomials(self, values: Sequence[Sequence[float] | Floats]) -> Floats:
-        """float[degree + 1, numbers]: coefficients, highest power first."""
-        rows = np.array(values, dtype=np.float64)
-        return np.asarray(np.linalg.solve(np.vander(self._grid), rows), dtype=np.float64)
-
-    def _unit_tables(self) -> dict[str, tuple[Floats, Floats, Floats]]:
-        """By mass, (base, swing, quartic) over errors of beams, of leaves and of the preload."""
-        known: dict[object, tuple[Floats, Floats, Floats]] = {}
-        laws: dict[object, UnitNumbers] = {}
-        tables = {}
-
-        def fit(seen: UnitSeen, alike: object, beams: float, leaves: float, preload: float) -> list[float]:
-            key = (alike, beams, leaves)
-            if key not in laws:
-                laws[key] = unit_numbers(seen, self._drawn.unit_sheet, beams, leaves)
-            found = fit_unit(laws[key], preload, self._swing, self._reaches, self._scale)
-            return [found.base, found.swing, found.quartic]
-
-        for name in self._names:
-            seen = self._drawn.units[name]
-            alike = _rounded((seen.left, seen.right, seen.plan))
-            key = (alike, round(seen.preload, 3))
-            if key not in known:
-                known[key] = (
-                    self._polynomials([fit(seen, alike, error, 0.0, seen.preload) for error in self._grid]),
-                    self._polynomials([fit(seen, alike, 0.0, error, seen.preload) for error in self._grid]),
-                    self._polynomials([fit(seen, alike, 0.0, 0.0, seen.preload + error) for error in self._grid]),
-                )
-            tables[name] = known[key]
-        return tables
-
-    def _coupler_tables(self) -> list[Floats]:
-        """One for each coupler found: the fields of ``SpringNumbers`` over errors of its walls."""
-        known: dict[object, list[LeafLaw]] = {}
-        rubs: dict[object, float] = {}
-        tables = []
-        self.rubs = []
-        for item in self._drawn.couplers:
-            key = (item.kind, *_leaf_key(item))
-            if key not in known:
-                chain = chain_of_leaf(item.leaf, item.sheet)
-                nominal = leaf_law(chain, item.kind, self._throw)
-                known[key] = [_scaled(nominal, factor) for factor in self._factors(item)]
-                turns = item.kind is LeafKind.ROCKER
-                rubs[key] = self._mu * post_rub(chain, nominal, self._scale, self._drawn.post_radius) if turns else 0.0
-            self.rubs.append(rubs[key])
-            # a coupling that is not the network's has no carrier that was ever computed: take that as rigid
-            carrier = min(self._stiff.get(item.name, RIGID_CARRIER), RIGID_CARRIER)
-            rows = []
-            for law in known[key]:
-                rows.append(astuple(spring_numbers(law, carrier, self._scale)))
-            tables.append(self._polynomials(rows))
-        return tables
-
-    def _factors(self, item: CouplerDrawn | BiasDrawn) -> list[float]:
-        """Over the grid of errors, the flexure's stiffness over that of the drawn one.
-
-        It bends as it did, at other forces: what is of higher order goes with the same factor.
-        """
-        chains = [chain_of_leaf(thickened(item.leaf, error), item.sheet) for error in (0.0, *self._grid)]
-        nominal, *others = [float(signal_matrix(chain)[0, 0]) for chain in chains]
-        return [other / nominal for other in others]
-
-    def _bias_tables(self) -> list[Floats]:
-        known: dict[object, tuple[Floats, BiasNumbers]] = {}
-        tables = []
-        self._slides: dict[str, Bound] = {}
-        for item in self._drawn.biases:
-            key = (*_leaf_key(item), round(item.offset, 3))
-            if key not in known:
-                chain = chain_of_leaf(item.leaf, item.sheet)
-                found = bias_numbers(chain, item.offset, self._throw, self._scale, self._drawn.post_radius)
-                nominal = np.array([found.bias, found.stiffness, found.cubic, found.quartic])
-                known[key] = self._polynomials([nominal * factor for factor in self._factors(item)]), found
-            table, numbers = known[key]
-            self._slides[item.mass] = numbers.rub
-            tables.append(table)
-        return tables
-
-    # ---- assembly
-
     def _shape(self, network: Network) -> None:
         """The network as found: its masses, and the couplings of the geometry."""
         none = self.errors(1)
         couplings, self_terms = [], {mass.name: 0.0 for mass in network.masses}
         for item, table in zip(self._drawn.couplers, self._couplers, strict=True):
-            c, source, target, *_ = _at(table, none.couplers[0][:1])[:, 0]
+            c, source, target, *_ = values_at(table, none.couplers[0][:1])[:, 0]
             couplings.append(Coupling(item.source, item.target, trim(float(c)), 0.0))
             self_terms[item.source] += float(source)
             self_terms[item.target] += float(target)
         masses = []
         leaves = {item.mass: table for item, table in zip(self._drawn.biases, self._biases, strict=True)}
         for mass in network.masses:
-            q, stiffness = _at(leaves[mass.name], np.zeros(1))[:2, 0] if mass.name in leaves else (0.0, 0.0)
-            base, swing, _ = _at(self._units[mass.name][0], np.zeros(1))[:, 0]
+            q, stiffness = values_at(leaves[mass.name], np.zeros(1))[:2, 0] if mass.name in leaves else (0.0, 0.0)
+            base, swing, _ = values_at(self._units[mass.name][0], np.zeros(1))[:, 0]
             k0 = float(base + self_terms[mass.name] + stiffness)
             masses.append(replace(mass, k0=trim(k0), k1=trim(float(swing)), compensation=0.0, bias=trim(float(q))))
         self.network = replace(network, masses=tuple(masses), couplings=tuple(couplings))
@@ -310,21 +211,21 @@ class Built:
         masses = np.zeros((8, len(place), lanes))  # base, swing, bias, quartic, cubic, friction and how it goes with x
         for index, name in enumerate(self._names):
             beams, leaves, pins = self._units[name]
-            drawn = _at(beams, np.zeros(1))
-            numbers = _at(beams, errors.beams[index]) - drawn
-            numbers = numbers + _at(leaves, errors.leaves[index]) + _at(pins, errors.pins[index]) - drawn
+            drawn = values_at(beams, np.zeros(1))
+            numbers = values_at(beams, errors.beams[index]) - drawn
+            numbers = numbers + values_at(leaves, errors.leaves[index]) + values_at(pins, errors.pins[index]) - drawn
             at = place[name]
             masses[0, at], masses[1, at], masses[3, at] = numbers
             masses[5:, at] = np.array(self.friction[name])[:, None]
         entries = np.zeros((5, len(self._drawn.couplers), lanes))  # c, Q, C, B, R of each coupler
         for index, (item, table) in enumerate(zip(self._drawn.couplers, self._couplers, strict=True)):
-            c, source, target, *higher = _at(table, errors.couplers[index])
+            c, source, target, *higher = values_at(table, errors.couplers[index])
             masses[0, place[item.source]] += source
             masses[0, place[item.target]] += target
             entries[:4, index] = [c, *higher]
             entries[4, index] = self.rubs[index]
         for index, (leaf, table) in enumerate(zip(self._drawn.biases, self._biases, strict=True)):
-            q, stiffness, cubic, quartic = _at(table, errors.biases[index])
+            q, stiffness, cubic, quartic = values_at(table, errors.biases[index])
             at = place[leaf.mass]
             masses[2, at] += q - stiffness * errors.posts[index] / self._scale.length
             masses[0, at] += stiffness
@@ -344,12 +245,12 @@ class Built:
             masses[3, at] = self._drawn.tabs.get(name, 0.0) / length
         masses[4] = self._rubbing
         for leaf, table in zip(self._drawn.biases, self._biases, strict=True):
-            masses[1:3, place[leaf.mass]] = leaf.lift / length, _at(table, none)[1, 0]
+            masses[1:3, place[leaf.mass]] = leaf.lift / length, values_at(table, none)[1, 0]
         entries = np.zeros((3, len(self._entries)))
         owners = np.repeat(np.arange(len(place)), np.diff(self._structure.row_start))
         for entry, (index, owner) in enumerate(zip(self._entries, owners, strict=True)):
             item = self._drawn.couplers[index]
-            _, source, target, *_ = _at(self._couplers[index], none)[:, 0]
+            _, source, target, *_ = values_at(self._couplers[index], none)[:, 0]
             low, high = (lift / length for lift in item.lifts)
             ends = (low, high, source) if place[item.source] == owner else (high, low, target)
             entries[:, entry] = ends
@@ -372,33 +273,3 @@ class Built:
 def _trimmed(bound: Bound) -> Bound:
     least, slope, curve = bound
     return trim(least), trim(slope), trim(curve)
-
-
-def _at(polynomials: Floats, errors: Floats) -> Floats:
-    """float[numbers, L] of polynomials float[degree + 1, numbers] at ``errors`` float[L]."""
-    value = np.zeros((polynomials.shape[1], len(errors)))
-    for row in polynomials:
-        value = value * errors + row[:, None]
-    return value
-
-
-def _scaled(law: LeafLaw, factor: float) -> LeafLaw:
-    return LeafLaw(*(factor * value for value in astuple(law)))
-
-
-def _leaf_key(item: CouplerDrawn | BiasDrawn) -> tuple[object, ...]:
-    return _rounded(item.leaf), item.sheet
-
-
-def _rounded(value: object) -> object:
-    """Nested numbers rounded to a micrometre: dimensions nearer than that are one, drawn on a grid of a tenth."""
-    if isinstance(value, float):
-        return round(value, 3) + 0.0
-    if isinstance(value, tuple):
-        return tuple(_rounded(item) for item in value)
-    fields = getattr(value, "__dataclass_fields__", None)
-    # where a part stands is not what it is
-    return tuple(_rounded(getattr(value, name)) for name in fields if name not in _PLACES) if fields else value
-
-
-_PLACES = ("face", "row", "out")
