@@ -19,12 +19,12 @@ from mdlcad.mechanics.compensation import COMPENSATION_FILE, Compensation, final
 from mdlcad.network.model import Network
 from mdlcad.proof.outcome import Proof
 from mdlcad.report.make import PAGE
+from mdlcad.report.margins import margin_rows
 from mdlcad.report.pictures import drawing, photo
 from mdlcad.report.report import Report
 from mdlcad.report.tables import (
     flexure_rows,
     kinds_of_masses,
-    margin_rows,
     port_rows,
     rule_rows,
     size_rows,

@@ -13,7 +13,8 @@ from mdlcad.mechanics.flexure import Sheet
 from mdlcad.mechanics.leaves import LeafKind, trim
 from mdlcad.mechanics.process import Plate, PlateRole, Process
 from mdlcad.signoff.lvs import Recovered
-from mdlcad.signoff.measure import LeafSeen, UnitSeen, measure_leaf, measure_unit
+from mdlcad.signoff.measure import UnitSeen, measure_unit
+from mdlcad.signoff.measure_leaf import LeafSeen, measure_leaf
 from mdlcad.signoff.readback import ReadBody
 
 _GRAVITY = 9.81

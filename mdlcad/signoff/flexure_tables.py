@@ -22,7 +22,8 @@ from mdlcad.mechanics.strains import reach_at
 from mdlcad.mechanics.unit import clock_swing
 from mdlcad.network.model import Network
 from mdlcad.signoff.drawn import BiasDrawn, CouplerDrawn, Drawn
-from mdlcad.signoff.measure import UnitSeen, chain_of_leaf, thickened
+from mdlcad.signoff.measure import UnitSeen
+from mdlcad.signoff.measure_leaf import chain_of_leaf, thickened
 from mdlcad.signoff.numbers import (
     BiasNumbers,
     Bound,

@@ -12,9 +12,9 @@ from lxml import html
 from mdlcad.artefact import load
 from mdlcad.errors import UsageError
 from mdlcad.flow.schemas import schema
+from mdlcad.report.margins import margin_rows
 from mdlcad.report.page import page, write_page
 from mdlcad.report.report import Report, Stopped, TiltReport
-from mdlcad.report.tables import margin_rows
 from tests.report.folders import BROKEN, folder, proof
 from tests.report.schema_check import problems
 

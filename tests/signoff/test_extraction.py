@@ -18,7 +18,8 @@ from mdlcad.parts.stiffness import carrier_stiffnesses, lifts_of
 from mdlcad.signoff.drawn import Drawn, measure_device
 from mdlcad.signoff.extraction import Built
 from mdlcad.signoff.lvs import compare, recover
-from mdlcad.signoff.measure import chain_of_leaf, measure_leaf, measure_unit, spans_at_x
+from mdlcad.signoff.measure import measure_unit, spans_at_x
+from mdlcad.signoff.measure_leaf import chain_of_leaf, measure_leaf
 from mdlcad.signoff.numbers import bias_numbers
 from mdlcad.signoff.readback import ReadBody, read_step
 from mdlcad.signoff.stops import stops_of

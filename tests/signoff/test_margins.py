@@ -18,7 +18,7 @@ from mdlcad.proof.reference import build_reference
 from mdlcad.report.report import Report
 from mdlcad.signoff.extraction import Built, BuiltDevice
 from mdlcad.signoff.margins import Margins, find_margins, grid_of
-from mdlcad.signoff.measure import measure_leaf
+from mdlcad.signoff.measure_leaf import measure_leaf
 from mdlcad.signoff.readback import read_step
 
 

@@ -13,9 +13,9 @@ from mdlcad.network.model import Network
 from mdlcad.parts.store import Parts
 from mdlcad.proof.prove import prove
 from mdlcad.proof.reference import build_reference
+from mdlcad.report.margins import margin_rows
 from mdlcad.report.page import verdict_of
 from mdlcad.report.report import Report
-from mdlcad.report.tables import margin_rows
 from mdlcad.signoff.extraction import Built, BuiltDevice
 from mdlcad.signoff.mixtures import (
     MIXTURES,
