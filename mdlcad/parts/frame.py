@@ -6,8 +6,9 @@ from collections.abc import Mapping, Sequence
 from itertools import pairwise
 
 import shapely
-from shapely import Polygon
+from shapely import MultiPolygon, Polygon
 from shapely.affinity import translate
+from shapely.geometry.base import BaseGeometry
 
 from mdlcad.mechanics.decks import Deck, deck_of_plate
 from mdlcad.mechanics.process import PlateRole
@@ -95,7 +96,8 @@ def frame_bodies(
     Args:
         posts: all posts; those that reach the base or the cover get their holes there.
         notches: what is to be cut from the rim of a plate and from the shims on both sides of it, by plate name.
-        screws: go through everything here. windows: go through the cover.
+        screws: go through everything here; of rims and shims over the unit plate, what none goes through is left out.
+            windows: go through the cover.
     """
     inside = interior(stack, boundary)
     through = [screw_hole(stack, screw) for screw in screws]
@@ -116,6 +118,8 @@ def frame_bodies(
         kind = BodyKind.SPACER if plate.role is PlateRole.CLOCK else BodyKind.FRAME
         colour = palette.SPACER if kind is BodyKind.SPACER else palette.FRAME
         shape = cut(shape, notches.get(plate.name, ()))
+        if plate.role in (PlateRole.RUNG, PlateRole.TRUNK):
+            shape = _screwed(shape, screws)
         bodies += _pieces(stack, f"{kind.value}.{plate.name}", kind, plate.name, shape, colour)
     for below, above in pairwise(stack.process.stack.plates):
         if deck_of_plate(above.name) is not stack.deck:
@@ -124,10 +128,20 @@ def frame_bodies(
         height = round(stack.bottom(above.name) - z, 6)
         # what passes the rim of a plate would rub on shims that go on above or below it
         passed = [*notches.get(below.name, ()), *notches.get(above.name, ())]
-        for index, piece in enumerate(pieces(cut(rim, passed))):
+        for index, piece in enumerate(pieces(_screwed(cut(rim, passed), screws))):
             name = f"shim.{above.name}" if index == 0 else f"shim.{above.name}.{index}"
             bodies.append(Body(name, BodyKind.SPACER, "shims", z, height, piece, STILL, (FRAME_REF,), palette.SPACER))
     return bodies
+
+
+def _screwed(shape: BaseGeometry, screws: Sequence[Body]) -> BaseGeometry:
+    """``shape`` without the pieces that no screw goes through: between two near tabs there is no room for one.
+
+    Nothing would hold such a piece but its neighbours' pressure. All of ``shape`` if there are no screws at all.
+    """
+    places = [screw.section.centroid for screw in screws]
+    kept = [piece for piece in pieces(shape) if any(Polygon(piece.exterior).contains(place) for place in places)]
+    return MultiPolygon(kept) if kept else shape
 
 
 def _filled(stack: Stack, rim: Polygon, found_ribs: Sequence[Polygon]) -> Polygon:

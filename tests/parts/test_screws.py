@@ -5,8 +5,12 @@ from dataclasses import replace
 import pytest
 import shapely
 
+from mdlcad.mechanics.process import PlateRole
 from mdlcad.parts.body import BodyKind
+from mdlcad.parts.frame import frame_bodies
 from mdlcad.parts.plates import plates_of
+from mdlcad.parts.screws import screw_bodies
+from mdlcad.parts.stack import make_stack
 from mdlcad.signoff.drc import check_cut, check_motion
 from tests.parts.device import small_device
 
@@ -66,3 +70,25 @@ def test_without_a_starting_state_there_are_no_windows(bodies):
     plain = next(body.section for body in made.bodies() if body.kind is BodyKind.COVER)
     open_ = next(body.section for body in bodies if body.kind is BodyKind.COVER)
     assert len(open_.interiors) > len(plain.interiors)
+
+
+def test_a_piece_of_rim_between_two_near_tabs_that_no_screw_holds_is_left_out(device):
+    boundary = device.boundary
+    stack = make_stack(device.process, device.sizing, device.network.dynamics.phases)
+    low_x, low_y, high_x, _ = boundary.bounds
+    middle = low_x + 0.26 * (high_x - low_x)  # between a corner and the screw half way
+    sides = [shapely.box(middle + at - 6.0, low_y - 1.0, middle + at + 6.0, low_y + 12.0) for at in (-11.0, 11.0)]
+    between = shapely.Point(middle, low_y + 2.0)  # a piece 10 mm wide
+    plate = device.process.plates(PlateRole.RUNG)[0].name
+    screws = screw_bodies(stack, boundary, sides)
+    piece = shapely.box(middle - 5.0, low_y, middle + 5.0, low_y + 12.0)
+    assert not any(piece.contains(screw.section.centroid) for screw in screws)
+    made = frame_bodies(stack, boundary, (), (), {plate: sides}, screws, ())
+    over = [body for body in made if body.name.startswith((f"frame.{plate}", f"shim.{plate}"))]
+    assert over and not any(body.section.intersects(between) for body in over)
+    whole = frame_bodies(stack, boundary, (), (), {}, screws, ())
+    assert any(body.section.intersects(between) for body in whole if body.name.startswith(f"frame.{plate}"))
+    for body in made:
+        if body.kind in (BodyKind.FRAME, BodyKind.SPACER):
+            rings = shapely.Polygon(body.section.exterior)
+            assert any(rings.contains(screw.section.centroid) for screw in screws), body.name
