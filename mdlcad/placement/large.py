@@ -1,8 +1,8 @@
 """Placement of networks too large to be annealed from a random start.
 
 The start (``levels``) is nearly legal, so what follows is warm, not hot: slots, with the trunks of a channel packed in
-bands of rows; slots again with whole channels packed, which is what a channel's tracks really are, most of the moves on
-masses that broken rules are about; and then only those, until no rule is broken.
+bands of rows, half of the moves on masses that broken rules are about; and then, with whole channels packed, which is
+what a channel's tracks really are, only those around one broken rule after the other, until none is.
 
 Where there is room, units stand like the black squares of a chessboard: no row of a channel then has a hub on either
 side, which is what asks most often for an order of trunks, and such orders make rings.
@@ -35,13 +35,12 @@ ATTEMPTS, ATTEMPTED, FAR_SEED = 3, 6000, 1_000_003
 """Starts to try, about how many masses all of them may have, and how far their seeds are apart: not the next ones,
 which the caller may try."""
 BAND_MOVES, BAND_HOT, BAND_FOCUS = 800, 2.0, 0.5
-WHOLE_MOVES, WHOLE_HOT, WHOLE_FOCUS = 200, 1.2, 0.5
 """Moves a mass, first heat, and share of the moves that are on troubled masses."""
 HOLD = 1.0
 """What it costs at first to leave the columns and sides of the start, where no hub holds too much."""
 LIGHT = 0.3
 """What a trunk without a track weighs at first beside a hub that holds too much: it is mended more easily."""
-MEND_IDLE, MEND_EACH, MEND_MOVES, MEND_HEATS = 40, 10, 10_000, (2.0, 1.0, 4.0)
+MEND_IDLE, MEND_EACH, MEND_MOVES, MEND_HEATS = 40, 10, 4_000, (1.0, 2.0, 4.0)
 """Rounds on the masses of one troubled spot alone without any gain, and how many more for each spot that there is;
 their moves, and their first heats, one after the other."""
 HANGS = 4
@@ -91,10 +90,7 @@ def _attempt(
     moves = 0 if given_up.is_set() else min(moves_per_mass, BAND_MOVES) * masses
     anneal(part, state, source, moves, BAND_HOT, COLD, False, BAND_FOCUS)
     state, _ = careful(part, state.mass[:, 0], state.side, state.mass[:, 1], seed)
-    _hold(part, state, HOLD)
-    moves = 0 if given_up.is_set() else min(moves_per_mass, WHOLE_MOVES) * masses
-    cost = float(anneal(part, state, source, moves, WHOLE_HOT, COLD, False, WHOLE_FOCUS))
-    _hold(part, state, 0.0)
+    cost = float(anneal(part, state, source, 0, COLD, COLD, False))
     cost = mend(part, state, source, cost, False, given_up)
     for turn in range(HANGS):
         if cost < 1e-6 or given_up.is_set() or not _hang_anew(part, state, seed + turn):
@@ -102,7 +98,7 @@ def _attempt(
         cost = float(anneal(part, state, source, 0, COLD, COLD, False))
         cost = mend(part, state, source, cost, False, given_up)
     whole, source = careful(problem, squares[state.mass[:, 0]], state.side, state.mass[:, 1], seed)
-    return whole, float(anneal(problem, whole, source, 0, WHOLE_HOT, COLD, False))
+    return whole, float(anneal(problem, whole, source, 0, COLD, COLD, False))
 
 
 def careful(

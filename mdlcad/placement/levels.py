@@ -2,12 +2,12 @@
 
 1. Masses are counted in levels by the least number of couplings from a mass with a port: a coupling then joins one
    level or two neighbouring ones.
-2. Every level goes to one column, the next to the same column or a neighbour, so no coupling spans more than one. The
-   path goes to and fro across a strip of columns, from one end of it to the other, and then on to the next strip.
+2. Every level goes to one column, the next to the same column or a neighbour, so no coupling spans more than one
+   (``path``).
 3. Columns are annealed until hardly any hub has more on a side than it holds (``crossings``), and the last are mended
    exactly (``repair``).
-4. Within its column a mass goes to the height of those it is coupled to, and into rows of the column's own parity where
-   these suffice: two hubs of one row are what asks for an order of trunks.
+4. Within its column a mass goes to the height of those it is coupled to and of its tabs, and into rows of the column's
+   own parity where these suffice: two hubs of one row are what asks for an order of trunks.
 """
 
 from __future__ import annotations
@@ -19,20 +19,18 @@ import numpy as np
 from mdlcad.placement.chance import random_source
 from mdlcad.placement.crossings import settle_columns
 from mdlcad.placement.lattice import Lattice
+from mdlcad.placement.path import path_of
 from mdlcad.placement.problem import Floats, Ints, Problem
 from mdlcad.placement.repair import Columns, repair_all
 
-STRIP, SQUAT = 4, 22
-"""Least columns of a strip, about, and how many rows there are to each: where a narrow strip is tall, it turns often,
-and there trunks are long."""
 SETTLE, SETTLE_HOT, SETTLE_COLD = 500, 10.0, 0.5
 """Moves a mass of the annealing of columns, and its heats."""
+SETTLED, SETTLED_MASSES = 3, 6000
+"""Times that columns are annealed from the start if hubs cannot be mended, and about how many masses all may have."""
 CELL, CROWDED = 12, 1.15
 """Rows of a cell; how much fuller than the average cell one may be."""
-REST = 4
-"""About how many levels move on until two share a column: where all do, a mass has hardly any choice of columns. They
-do so where the strip has room, after at least half and at most twice as many."""
-_SWEEPS = 12
+SWEEPS, SPACING = 12, 2.0
+"""Times that heights are counted anew; slots from one mass of a column to the next, where there is room."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,34 +46,43 @@ def start_by_levels(problem: Problem, lattice: Lattice, seed: int) -> Start:
     masses = len(problem.mass) - 1
     beside = _neighbours(problem, masses)
     levels = _levels(problem, beside, masses)
-    path = _path([len(level) for level in levels], lattice)
+    places = path_of([len(level) for level in levels], _cuts(problem, levels), len(lattice.column_x))
+    bands = 1 + places[-1].band
     column, order = np.zeros(masses, np.int32), np.zeros(masses)
-    for rank, (level, (at, down)) in enumerate(zip(levels, path, strict=True)):
-        column[level], order[level] = at, -rank if down else rank
+    for level, place in zip(levels, places, strict=True):
+        column[level], order[level] = place.column, (place.band + 0.5) / bands * len(lattice.row_y)
     column = _fitted(column, lattice)
-    height = _heights(_stand(column, order, beside, lattice), lattice)
+    height = _heights(_stand(problem, column, order, beside, lattice), lattice)
     cell = (height // CELL).astype(np.int32)
     room = np.zeros((len(lattice.column_x), int(np.max(cell)) + 1))
     for at, row in lattice.slots:
         room[at, min(row // CELL, room.shape[1] - 1)] += CROWDED * masses / len(lattice.slots)
-    columns = Columns.of(problem, column, np.zeros(len(problem.coupling), np.int32), np.zeros(masses, np.int32))
-    _settle(problem, columns, cell, room, seed)
-    return Start(_stand(columns.column, height, beside, lattice), columns)
+    columns = _settled(problem, column, cell, room, seed)
+    return Start(_stand(problem, columns.column, height, beside, lattice), columns)
 
 
-def _settle(
-    problem: Problem,
-    columns: Columns,
-    cell: Ints,
-    room: Floats,
-    seed: int,
-) -> None:
-    """Anneal columns and sides (of couplings and leaves), then mend those around hubs that hold too much, in place."""
-    moves = SETTLE * len(columns.column)
+def _settled(problem: Problem, column: Ints, cell: Ints, room: Floats, seed: int) -> Columns:
+    """Anneal columns and sides (of couplings and leaves), then mend those around hubs that hold too much.
+
+    Where some cannot be mended, all is tried again; the first try that leaves the fewest is taken.
+    """
+    masses = len(column)
     source = random_source(seed)
-    chosen = (columns.column, columns.side, columns.bias)
-    settle_columns(problem, columns.into, *chosen, cell, room, columns.slots, source, moves, SETTLE_HOT, SETTLE_COLD)
-    repair_all(problem, columns, seed)
+    tries: list[tuple[int, Columns]] = []
+    for _ in range(max(1, min(SETTLED, SETTLED_MASSES // masses))):
+        columns = Columns.of(
+            problem, column.copy(), np.zeros(len(problem.coupling), np.int32), np.zeros(masses, np.int32)
+        )
+        chosen = (columns.column, columns.side, columns.bias)
+        moves = SETTLE * masses
+        settle_columns(
+            problem, columns.into, *chosen, cell, room, columns.slots, source, moves, SETTLE_HOT, SETTLE_COLD
+        )
+        repair_all(problem, columns, seed)
+        tries.append((len(columns.wrong(problem, np.arange(masses, dtype=np.int32))), columns))
+        if tries[-1][0] == 0:
+            break
+    return min(tries, key=lambda found: found[0])[1]
 
 
 def _neighbours(problem: Problem, masses: int) -> list[list[int]]:
@@ -102,38 +109,18 @@ def _levels(problem: Problem, beside: list[list[int]], masses: int) -> list[list
     return levels
 
 
-def _path(sizes: list[int], lattice: Lattice) -> list[tuple[int, bool]]:
-    """By level, its column and whether its strip is filled from the top down. Outermost columns count half."""
-    room = np.bincount([column for column, _ in lattice.slots], minlength=len(lattice.column_x)).astype(float)
-    room[0] /= 2
-    room[-1] /= 2
-    share = sum(sizes) / np.sum(room)
-    strips = max(1, round(len(room) / max(STRIP, len(lattice.row_y) / SQUAT)))
-    ends = [round(len(room) * i / strips) for i in range(strips + 1)]
-    used = np.zeros(len(room))
-    path: list[tuple[int, bool]] = []
-    at, strip, ahead, moved = 0, 0, 1, 0
-    for rank, size in enumerate(sizes):
-        low, high = ends[strip], ends[strip + 1] - 1
-        if (
-            rank
-            and strip + 1 < strips
-            and np.sum(room[low : high + 1] * share - used[low : high + 1]) <= sum(sizes[rank : rank + high - at])
-        ):
-            # the strip's last levels lead over to the next one
-            at += 1
-            strip += int(at > high)
-        elif rank:
-            onward = low <= at + ahead <= high
-            roomy = used[at] / max(room[at], 0.5) <= np.mean(used[low : high + 1]) / np.mean(room[low : high + 1])
-            due = moved >= 2 * REST or (moved >= REST / 2 and roomy) if onward else moved > 0 and roomy
-            step = 0 if due else ahead if onward else -ahead
-            ahead = step or ahead
-            at = min(max(at + step, low), high)
-            moved = moved + 1 if step else 0
-        used[at] += size
-        path.append((at, strip % 2 == 1))
-    return path
+def _cuts(problem: Problem, levels: list[list[int]]) -> list[int]:
+    """How many nets lead from a level before the i-th to it or one after it, or back, for every i."""
+    level_of = {mass: rank for rank, level in enumerate(levels) for mass in level}
+    cuts = [0] * len(levels)
+    for mass in range(len(problem.mass) - 1):
+        met = [
+            level_of[int(problem.coupling[j, 1])]
+            for j in problem.outs[problem.mass[mass, 0] : problem.mass[mass + 1, 0]]
+        ]
+        for rank in range(min([level_of[mass], *met]), max([level_of[mass], *met])):
+            cuts[rank + 1] += 1
+    return cuts
 
 
 def _fitted(column: Ints, lattice: Lattice) -> Ints:
@@ -151,10 +138,8 @@ def _heights(slot: Ints, lattice: Lattice) -> np.ndarray[tuple[int], np.dtype[np
     return np.array([float(lattice.slots[index][1]) for index in slot.tolist()])
 
 
-def _stand(
-    column: Ints, order: np.ndarray[tuple[int], np.dtype[np.float64]], beside: list[list[int]], lattice: Lattice
-) -> Ints:
-    """A slot for every mass: each column first in ``order``, then by mean neighbours, spread over its slots."""
+def _stand(problem: Problem, column: Ints, order: Floats, beside: list[list[int]], lattice: Lattice) -> Ints:
+    """A slot for every mass: each column first in ``order``, then by the mean height of neighbours and tabs."""
     slots: list[list[int]] = [[] for _ in lattice.column_x]
     for index, (at, _) in sorted(enumerate(lattice.slots), key=lambda item: item[1]):
         slots[at].append(index)
@@ -164,16 +149,42 @@ def _stand(
     for at, free in enumerate(slots):
         own = [slot for slot in free if lattice.slots[slot][1] % 2 == at % 2]
         slots[at] = own if len(own) >= len(members[at]) else free
+    tabs: list[list[float]] = [[] for _ in beside]
+    for low, high, _, mass in problem.tab.tolist():
+        tabs[mass].append((low + high) / 2)
     height, slot = order.astype(float), np.zeros(len(column), np.int32)
-    for sweep in range(_SWEEPS):
+    for sweep in range(SWEEPS):
         for at in range(len(members)) if sweep % 2 == 0 else reversed(range(len(members))):
             wish = {
-                mass: float(np.mean(height[beside[mass]])) if sweep and beside[mass] else float(height[mass])
+                mass: float(np.mean([*height[beside[mass]], *tabs[mass]]))
+                if sweep and (beside[mass] or tabs[mass])
+                else float(height[mass])
                 for mass in members[at]
             }
             members[at].sort(key=lambda mass: (wish[mass], mass))
-            free, count = slots[at], len(members[at])
-            for k, mass in enumerate(members[at]):
-                slot[mass] = free[(2 * k + 1) * len(free) // (2 * count)]
-                height[mass] = lattice.slots[int(slot[mass])][1]
+            if not members[at]:
+                continue
+            rows = [float(lattice.slots[index][1]) for index in slots[at]]
+            wanted = np.interp([wish[mass] for mass in members[at]], rows, np.arange(len(rows)))
+            for mass, index in zip(members[at], spread(wanted, len(rows)), strict=True):
+                slot[mass] = slots[at][index]
+                height[mass] = rows[index]
     return slot
+
+
+def spread(wanted: Floats, count: int) -> list[int]:
+    """Places among ``count`` for ascending ``wanted`` ones, ``SPACING`` apart if there is room, least squares away.
+
+    Pool adjacent violators: what would stand too near moves together, to the mean of what it wants.
+    """
+    steps = np.arange(len(wanted)) * min(SPACING, count / max(1, len(wanted)))
+    blocks: list[tuple[float, int]] = []
+    for place in (wanted - steps).tolist():
+        mean, size = place, 1
+        while blocks and blocks[-1][0] >= mean:
+            before, others = blocks.pop()
+            mean, size = (mean * size + before * others) / (size + others), size + others
+        blocks.append((mean, size))
+    first = np.repeat([mean for mean, _ in blocks], [size for _, size in blocks])
+    places = np.floor(np.clip(first, 0.0, max(0.0, count - 1 - steps[-1])) + steps + 1e-9)
+    return [int(place) for place in places]
