@@ -17,10 +17,11 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from mdlcad.placement.anneal import HOME_SIDE, anneal, trouble
+from mdlcad.placement.anneal import HOME_SIDE, anneal
 from mdlcad.placement.costs import BIAS_SIDE, SLOT
 from mdlcad.placement.lattice import Lattice
 from mdlcad.placement.levels import start_by_levels
+from mdlcad.placement.mend import mend
 from mdlcad.placement.problem import Ints, Problem
 from mdlcad.placement.repair import Columns, repair_all
 from mdlcad.placement.state import COLUMN, State, start
@@ -40,9 +41,8 @@ HOLD = 1.0
 """What it costs at first to leave the columns and sides of the start, where no hub holds too much."""
 LIGHT = 0.3
 """What a trunk without a track weighs at first beside a hub that holds too much: it is mended more easily."""
-MEND_IDLE, MEND_EACH, MEND_MOVES, MEND_HEATS = 40, 10, 4_000, (1.0, 2.0, 4.0)
-"""Rounds on the masses of one troubled spot alone without any gain, and how many more for each spot that there is;
-their moves, and their first heats, one after the other."""
+TOGETHER = 2
+"""Spots that are mended at once where there is but one start."""
 HANGS = 4
 """Times that what still hangs on hubs which hold too much is hung up anew, exactly."""
 
@@ -53,14 +53,17 @@ def place_large(
     """A state with few broken rules or none, and their cost. Same arguments, same result, for any ``workers``.
 
     So many starts as there are ``workers`` are tried at once. The first without broken rules is taken, counted by its
-    seed and not by when it is done, or the best.
+    seed and not by when it is done, or the best. A network too large for more than one is mended in several spots at
+    once instead.
     """
     given_up = threading.Event()
     best: tuple[State, float] | None = None
+    starts = min(ATTEMPTS, -(-ATTEMPTED // len(problem.mass)))
+    together = 1 if starts > 1 else TOGETHER
     with ThreadPoolExecutor(max(1, workers)) as pool:
         found = [
-            pool.submit(_attempt, problem, lattice, seed + turn * FAR_SEED, moves_per_mass, given_up)
-            for turn in range(min(ATTEMPTS, -(-ATTEMPTED // len(problem.mass))))
+            pool.submit(_attempt, problem, lattice, seed + turn * FAR_SEED, moves_per_mass, given_up, together, workers)
+            for turn in range(starts)
         ]
         try:
             for future in found:
@@ -78,7 +81,13 @@ def place_large(
 
 
 def _attempt(
-    problem: Problem, lattice: Lattice, seed: int, moves_per_mass: int, given_up: threading.Event
+    problem: Problem,
+    lattice: Lattice,
+    seed: int,
+    moves_per_mass: int,
+    given_up: threading.Event,
+    together: int,
+    workers: int,
 ) -> tuple[State, float]:
     masses = len(problem.mass) - 1
     squares = _squares(lattice, masses)
@@ -91,12 +100,12 @@ def _attempt(
     anneal(part, state, source, moves, BAND_HOT, COLD, False, BAND_FOCUS)
     state, _ = careful(part, state.mass[:, 0], state.side, state.mass[:, 1], seed)
     cost = float(anneal(part, state, source, 0, COLD, COLD, False))
-    cost = mend(part, state, source, cost, False, given_up)
+    cost = mend(part, state, source, cost, False, given_up, together, workers)
     for turn in range(HANGS):
         if cost < 1e-6 or given_up.is_set() or not _hang_anew(part, state, seed + turn):
             break
         cost = float(anneal(part, state, source, 0, COLD, COLD, False))
-        cost = mend(part, state, source, cost, False, given_up)
+        cost = mend(part, state, source, cost, False, given_up, together, workers)
     whole, source = careful(problem, squares[state.mass[:, 0]], state.side, state.mass[:, 1], seed)
     return whole, float(anneal(problem, whole, source, 0, COLD, COLD, False))
 
@@ -109,39 +118,6 @@ def careful(
     state.careful[0] = 1
     state.side[:], state.mass[:, 1] = side, bias
     return state, source
-
-
-def mend(
-    problem: Problem,
-    state: State,
-    source: npt.NDArray[np.uint64],
-    cost: float,
-    fixed: bool,
-    given_up: threading.Event | None = None,
-) -> float:
-    """Anneal one troubled spot after the other, keeping what is no worse; ``fixed`` keeps the slots. The cost.
-
-    Ends at once when it is ``given_up``: then nobody wants the result any more.
-    """
-    given_up = given_up or threading.Event()
-    spots = trouble(problem, state)
-    turn, at, idle = 0, 0, 0
-    # what no spot is to blame for is tabs, or couplings that reach too far
-    while cost > 1e-6 and len(spots) and idle < MEND_IDLE + MEND_EACH * len(spots) and not given_up.is_set():
-        heat = MEND_HEATS[turn % len(MEND_HEATS)]
-        before = [array.copy() for array in (state.mass, state.mass_at, state.side)]
-        spot = spots[at % len(spots)]
-        after = anneal(problem, state, source, MEND_MOVES, heat, COLD, fixed, 1.0, spot)
-        turn, at, idle = turn + 1, at + 1, idle + 1
-        if after > cost:
-            for array, old in zip((state.mass, state.mass_at, state.side), before, strict=True):
-                array[:] = old
-        elif after < cost:
-            cost, idle = after, 0
-            here = tuple(spot.tolist())
-            spots = trouble(problem, state)
-            at = next((i for i, found in enumerate(spots.tolist()) if tuple(found) > here), 0)
-    return cost
 
 
 def _hang_anew(problem: Problem, state: State, seed: int) -> bool:

@@ -11,8 +11,9 @@ from mdlcad.mechanics.rules import LayoutRules
 from mdlcad.network.model import Network
 from mdlcad.placement.anneal import anneal
 from mdlcad.placement.columns import Answers, question_of
-from mdlcad.placement.large import mend, place_large
+from mdlcad.placement.large import place_large
 from mdlcad.placement.lattice import Lattice
+from mdlcad.placement.mend import mend
 from mdlcad.placement.placement import PlacedMass, Placement
 from mdlcad.placement.problem import Ints, Problem, build, realisable
 from mdlcad.placement.state import State, start
