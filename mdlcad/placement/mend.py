@@ -20,9 +20,12 @@ from mdlcad.placement.costs import SLOT
 from mdlcad.placement.problem import Ints, Problem
 from mdlcad.placement.state import State
 
-IDLE, EACH, MOVES, HEATS, COLD = 40, 10, 4_000, (1.0, 2.0, 4.0), 0.2
-"""Rounds on the masses of one troubled spot alone without any gain, and how many more for each spot that there is;
-their moves, and their first heats, one after the other, and last heat."""
+IDLE, EACH = 40, 20
+"""Rounds on the masses of one troubled spot alone without any gain, and how many more for each spot that there is."""
+MOVES, HEATS, COLD = 4_000, (1.0, 2.0, 4.0), 0.2
+"""Moves of a round, first heats, one after the other, and last heat."""
+LONGER = 4
+"""How much longer a round is on what every heat has been tried on in vain."""
 APART = 12
 """Channels between two spots that are annealed at once: masses move by a column or two, their nets a column more."""
 
@@ -55,8 +58,9 @@ def mend(
             before = _Chosen.of(state)
             taken = _apart(spots, at % len(spots), together)
             heat = HEATS[turn % len(HEATS)]
+            moves = MOVES if idle < len(HEATS) * len(spots) else LONGER * MOVES
             tries = [
-                pool.submit(_try, problem, before, *bench, heat, fixed, spots[spot])
+                pool.submit(_try, problem, before, *bench, moves, heat, fixed, spots[spot])
                 for bench, spot in zip(benches, taken, strict=False)
             ]
             found = [future.result() for future in tries]
@@ -82,13 +86,14 @@ def _try(
     before: _Chosen,
     state: State,
     source: npt.NDArray[np.uint64],
+    moves: int,
     heat: float,
     fixed: bool,
     spot: Ints,
 ) -> tuple[_Chosen, float]:
     """What annealing one spot comes to, and its cost."""
     before.write(state)
-    cost = anneal(problem, state, source, MOVES, heat, COLD, fixed, 1.0, spot)
+    cost = anneal(problem, state, source, moves, heat, COLD, fixed, 1.0, spot)
     return _Chosen.of(state), cost
 
 

@@ -18,12 +18,23 @@ from mdlcad.placement.crossings import EDGE, hub_costs
 from mdlcad.placement.problem import Floats, Ints, Problem
 from mdlcad.solver import solver_with
 
-LIMIT = 0.1
-"""CP-SAT's deterministic time for an answer."""
-ANSWERS = 25
-"""Most answers to ask for around one hub."""
-REACH = (1, 2, 2, 3, 4, 5)
-"""How many couplings away from a hub that holds too much masses may be that move for it, one time after the other."""
+
+@dataclass(frozen=True, slots=True)
+class Effort:
+    """How much is tried for a hub.
+
+    Attributes:
+        reach: how many couplings away from it masses may be that move for it.
+        answers: most answers to ask for; limit: CP-SAT's deterministic time for each.
+    """
+
+    reach: int
+    answers: int = 25
+    limit: float = 0.1
+
+
+EFFORTS = (*(Effort(reach) for reach in (1, 2, 2, 3, 4, 5)), Effort(5, 100, 1.0), Effort(6, 100, 1.0))
+"""One time after the other, for the hubs that still hold too much."""
 SPARE = 25
 """Up to so many masses, the answer with the fewest trunks is asked for; for more, any."""
 WIDTH = 2
@@ -78,18 +89,18 @@ class Columns:
 def repair_all(problem: Problem, columns: Columns, seed: int) -> None:
     """Mend those hubs that hold too much, one by one, with more and more around them; in place."""
     wrong = columns.wrong(problem, np.arange(len(columns.column), dtype=np.int32))
-    for reach in REACH:
+    for effort in EFFORTS:
         for hub in wrong:
             if not columns.wrong(problem, np.array([hub], np.int32)):
                 continue
             near = {hub}
-            for _ in range(reach):
+            for _ in range(effort.reach):
                 near |= {other for mass in near for other in columns.beside(problem, mass)}
-            repair(problem, columns, near, seed)
+            repair(problem, columns, near, seed, effort)
         wrong = columns.wrong(problem, np.array(wrong, np.int32))
 
 
-def repair(problem: Problem, columns: Columns, movable: Iterable[int], seed: int) -> bool:
+def repair(problem: Problem, columns: Columns, movable: Iterable[int], seed: int, effort: Effort = EFFORTS[-1]) -> bool:
     """Move masses of ``movable``, their sides and leaves, until no hub of theirs and beside them holds too much.
 
     All else stays where it is, and hubs beside them that held too much before may go on doing so. In place; where no
@@ -111,8 +122,8 @@ def repair(problem: Problem, columns: Columns, movable: Iterable[int], seed: int
     if len(masses) <= SPARE:
         model.spare_trunks()
     before = [array.copy() for array in (columns.column, columns.side, columns.bias)]
-    solver = solver_with(seed, LIMIT)
-    for _ in range(ANSWERS):
+    solver = solver_with(seed, effort.limit)
+    for _ in range(effort.answers):
         if solver.solve(model.model) not in (cp_model.OPTIMAL, cp_model.FEASIBLE):
             break
         model.take(solver)
