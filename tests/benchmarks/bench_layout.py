@@ -45,6 +45,8 @@ from tests.placement.networks import SQUARE
 from tests.placement.tiles import tiled
 
 COPIES = (3, 4, 10, 20)
+WARMING = (3, 4)
+"""Sizes that are run before all others, and not counted: they compile kernels (not all are needed at every size)."""
 CORES = 2
 """Starts of a placement that are tried at once, and channels that are routed at once."""
 PORT_ROWS = 5
@@ -120,9 +122,7 @@ def main() -> None:
         lock = Path(folder) / "network.json"
         netlist = synthesise(read_device(ROOT / "examples" / "lock.mdl"))
         lock.write_bytes(to_json(map_netlist(netlist, load_library("parametron"))))
-        # the first runs may compile kernels (not all are needed at every size); they are not counted
-        warming = options.copies[:2]
-        for copies in (*warming, *options.copies):
+        for turn, copies in enumerate((*WARMING, *options.copies)):
             again = [sys.executable, "-m", "tests.benchmarks.bench_layout", str(copies), "--one", str(lock)]
             again += ["--reach", str(options.reach), "--fill", str(options.fill)]
             try:
@@ -130,16 +130,16 @@ def main() -> None:
             except subprocess.TimeoutExpired:
                 print(f"{copies} copies: not done in {options.limit:g} s")
                 break
-            rows.append(json.loads(done.stdout))
-            row = rows[-1]
-            if len(rows) > len(warming):
+            row = json.loads(done.stdout)
+            if turn >= len(WARMING):
+                rows.append(row)
                 print(
                     f"{row['masses']:6} masses {row['couplings']:6} couplings {row['columns']:4} columns  "
                     f"place {row['place']:7.1f} s (conflicts {row['cost'] / HARD:.0f})  route {row['route']:7.1f} s  "
                     f"{row['findings']} findings  {row['mb']} MB  {row['words'][:100]}",
                     flush=True,
                 )
-    draw(rows[len(warming) :], options.png)
+    draw(rows, options.png)
 
 
 def draw(rows: list[dict[str, Any]], png: Path) -> None:
