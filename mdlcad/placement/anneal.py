@@ -116,7 +116,7 @@ def _troubled(p: Problem, s: State, tracks: Floats, spot: Ints, found: Ints, see
     """List the masses that broken rules are about: their trunks stand beside one without
     a track, or they meet a row with one.
 
-    Around rows spot[1]..spot[2] of channel spot[0], or of all channels and tabs if that is -1.
+    Around rows spot[1]..spot[2] of channel spot[0], or everywhere if that is -1.
     """
     n, only, bands = 0, spot[0], len(tracks) // s.row.shape[0]
     first, last = (spot[1] - ASIDE, spot[2] + ASIDE) if only >= 0 else (0, s.row.shape[1] - 1)
@@ -142,10 +142,12 @@ def _troubled(p: Problem, s: State, tracks: Floats, spot: Ints, found: Ints, see
                 column = channel - 1 + side
                 if 0 <= column < p.slot_at.shape[0] and p.slot_at[column, row] >= 0:
                     n = _note(s.mass_at[p.slot_at[column, row]], found, seen, n)
-    for tab in range(len(p.tab) if only < 0 else 0):
+    for tab in range(len(p.tab)):
         way = p.way[tab, p.slot[s.mass[p.tab[tab, 3], SLOT], 0]]
         for column in range(way[1], way[2] + 1 if way[0] >= 0 else way[1]):
-            for row in range(p.tab[tab, 0], p.tab[tab, 1] + 1):
+            if only >= 0 and abs(column - only) > 1:
+                continue
+            for row in range(max(first, p.tab[tab, 0]), min(last, p.tab[tab, 1]) + 1):
                 slot = p.slot_at[column, row]
                 if slot >= 0 and s.mass_at[slot] >= 0:
                     n = _note(s.mass_at[slot], found, seen, _note(p.tab[tab, 3], found, seen, n))
@@ -177,11 +179,19 @@ def _counted(p: Problem, s: State, nets: Ints) -> Floats:
 
 @kernel
 def trouble(p: Problem, s: State) -> Ints:
-    """(N, 3) channel, first and last row of all that breaks rules, by channel: trunks without a track, and rows."""
+    """(N, 3) channel, first and last row of all that breaks rules, by channel: trunks without a track, rows, and masses
+    in the way of tabs, the last of each, by the channel left of them."""
     nets = np.arange(len(s.mass)).astype(np.int32)
     known = _counted(p, s, nets)
     channels, rows = s.row.shape[0], s.row.shape[1]
-    spots, n = np.zeros((np.sum(s.trunk_count) + channels * rows, 3), np.int32), 0
+    spots, n = np.zeros((np.sum(s.trunk_count) + channels * rows + len(p.tab), 3), np.int32), 0
+    blocked = np.full((len(p.tab), 2), -1, np.int32)
+    for tab in range(len(p.tab)):
+        way = p.way[tab, p.slot[s.mass[p.tab[tab, 3], SLOT], 0]]
+        for column in range(way[1], way[2] + 1 if way[0] >= 0 else way[1]):
+            for row in range(p.tab[tab, 0], p.tab[tab, 1] + 1):
+                if p.slot_at[column, row] >= 0 and s.mass_at[p.slot_at[column, row]] >= 0:
+                    blocked[tab, 0], blocked[tab, 1] = column, row
     for channel in range(channels):
         bands = len(known) // channels
         for band in range(channel * bands, (channel + 1) * bands):
@@ -195,6 +205,10 @@ def trouble(p: Problem, s: State) -> Ints:
         for row in range(rows):
             if row_cost(s.row[channel, row], p.is_open[channel, row], int(p.sizes[2])) > 1e-6:
                 spots[n, 0], spots[n, 1], spots[n, 2] = channel, row, row
+                n += 1
+        for tab in range(len(p.tab)):
+            if blocked[tab, 0] == channel:
+                spots[n, 0], spots[n, 1], spots[n, 2] = channel, blocked[tab, 1], blocked[tab, 1]
                 n += 1
     return spots[:n]
 

@@ -53,7 +53,7 @@ def mend(
     spots = trouble(problem, state)
     turn, at, idle = 0, 0, 0
     with ThreadPoolExecutor(max(1, min(workers, together))) as pool:
-        # what no spot is to blame for is tabs, or couplings that reach too far
+        # what no spot is to blame for is couplings that reach too far
         while cost > 1e-6 and len(spots) and idle < IDLE + EACH * len(spots) and not given_up.is_set():
             before = _Chosen.of(state)
             taken = _apart(spots, at % len(spots), together)

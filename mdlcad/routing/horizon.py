@@ -16,21 +16,28 @@ from mdlcad.placement.grid import RESOLUTION
 from mdlcad.routing.channel import ChannelRoute, solve
 from mdlcad.routing.pieces import Channel, Edge, Item
 
-MOST_TRUNKS = 100
-"""A channel of more trunks is routed in windows, which may miss the routing that the whole of it has."""
-ROWS = 8
-"""Rows that a window decides; it looks as many further up."""
+MOST_TRUNKS = 200
+"""A channel of more trunks is routed in windows, which may miss the routing that the whole of it has. (The whole of 126
+trunks with 300 items takes some two seconds.)"""
+ROWS = (8, 16, 32)
+"""Rows that a window decides; it looks as many further up. More are tried where what was kept leaves no way."""
 
 
 def solve_any(channel: Channel, rules: LayoutRules, seed: int) -> ChannelRoute | None:
     """Tracks and plates for ``channel``: at once, or in windows if it is long. None if none were found."""
     if channel.trouble or len(channel.trunks) <= MOST_TRUNKS:
         return solve(channel, rules, seed)
+    tries = (_by_windows(channel, rules, seed, rows) for rows in ROWS)
+    return next((found for found in tries if found is not None), None)
+
+
+def _by_windows(channel: Channel, rules: LayoutRules, seed: int, rows: int) -> ChannelRoute | None:
+    """Tracks and plates, ``rows`` decided at a time."""
     tracks: dict[int, float] = {}
     plates: dict[int, int] = {}
     low = min(item.y_low for item in channel.items)
     high = max(item.y_high for item in channel.items)
-    reach = ROWS * rules.row_pitch
+    reach = rows * rules.row_pitch
     for window in range(math.ceil((high - low) / reach)):
         bottom = low + window * reach
         part = _Part(channel, bottom - rules.row_pitch - 2 * rules.throw, bottom + 2 * reach, tracks, plates)

@@ -88,3 +88,26 @@ def test_given_up_it_changes_nothing(problem: Problem, begun: Start) -> None:
     given_up.set()
     assert mend(problem, state, source, cost, False, given_up) == cost
     assert np.array_equal(state.mass, before)
+
+
+def test_a_mass_in_the_way_of_a_tab_is_a_spot_to_mend(problem: Problem, begun: Start) -> None:
+    state, source, _ = fresh(problem, begun)
+    mend(problem, state, source, anneal(problem, state, source, 0, 1.0, 1.0, False), False)
+    before = {tuple(spot) for spot in trouble(problem, state).tolist()}
+    tab, column, row = next(
+        (tab, int(way[1]), row)
+        for tab, mass in enumerate(problem.tab[:, 3])
+        for way in (problem.way[tab, problem.slot[state.mass[mass, SLOT], 0]],)
+        if way[0] >= 0 and way[1] <= way[2]
+        for row in range(problem.tab[tab, 0], problem.tab[tab, 1] + 1)
+        if problem.slot_at[way[1], row] >= 0
+    )
+    slot = problem.slot_at[column, row]
+    assert state.mass_at[slot] < 0, "the way is free so far"
+    other = int(np.flatnonzero(problem.slot[state.mass[:, SLOT], 0] == column)[0])
+    state.mass_at[state.mass[other, SLOT]] = -1
+    state.mass[other, SLOT], state.mass_at[slot] = slot, other
+    assert (column, row, row) in {tuple(spot) for spot in trouble(problem, state).tolist()} - before, tab
+    cost = anneal(problem, state, source, 0, 1.0, 1.0, False)
+    mend(problem, state, source, cost, False)
+    assert state.mass_at[slot] < 0, "it has made way"
