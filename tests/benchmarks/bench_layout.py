@@ -4,7 +4,7 @@
 
 The networks are copies of the lock's as compiled, one tenth of the couplings swapped between copies at most
 ``--reach`` apart (default 1; as large as the number of copies for any two). The lattice is that of a square in which
-the masses fill ``--fill`` of the slots (default 0.18), sized for ``pom_cut``. Every size runs in a process of its own.
+the masses fill ``--fill`` of the slots (default 0.14), sized for ``pom_cut``. Every size runs in a process of its own.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ from tests.benchmarks.devices import ROOT
 from tests.placement.networks import SQUARE
 from tests.placement.tiles import tiled
 
-COPIES = (3, 4, 10, 20)
+COPIES = (3, 4, 10, 20, 200)
 WARMING = (3, 4)
 """Sizes that are run before all others, and not counted: they compile kernels (not all are needed at every size)."""
 CORES = 2
@@ -108,7 +108,7 @@ def main() -> None:
     parser = argparse.ArgumentParser()
     parser.add_argument("copies", type=int, nargs="*", default=list(COPIES))
     parser.add_argument("--reach", type=int, default=1)
-    parser.add_argument("--fill", type=float, default=0.18)
+    parser.add_argument("--fill", type=float, default=0.14)
     parser.add_argument("--limit", type=float, default=600.0, help="seconds a size")
     parser.add_argument("--png", type=Path, default=ROOT / "docs" / "images" / "layout-cost.png")
     parser.add_argument("--one", type=Path, help="measure the one size, of the network in this file")
