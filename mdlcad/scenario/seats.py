@@ -11,6 +11,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
+from scipy.spatial.distance import pdist
 
 from mdlcad.language import Device
 from mdlcad.network.model import Network
@@ -18,11 +19,15 @@ from mdlcad.scenario.ports import Port
 
 Point = tuple[float, float]
 
+UPPER = "upper"
+"""The deck, in placement.json, that stands above the other."""
+
 
 class _Mass(msgspec.Struct, frozen=True):
     mass: str
     x: float
     y: float
+    deck: str = "lower"
 
 
 class _Port(msgspec.Struct, frozen=True):
@@ -46,21 +51,28 @@ class Seats:
     Attributes:
         ports: bit "NAME[i]" -> its place on the boundary.
         placed: the masses are where the device has them.
+        aside: how far right of there those of the upper deck are drawn, as some stand above one of the lower.
     """
 
     boundary: tuple[Point, ...]
     masses: Mapping[str, Point]
     ports: Mapping[str, Point]
     placed: bool
+    aside: float = 0.0
 
 
 def placed_seats(found: PlacedSeats) -> Seats:
-    """The seats of a placement."""
+    """The seats of a placement; those of an upper deck half the least distance of two places aside."""
+    aside = 0.0
+    if any(item.deck == UPPER for item in found.masses):
+        places = np.array(sorted({(item.x, item.y) for item in found.masses}))
+        aside = 0.5 * float(pdist(places).min()) if len(places) > 1 else 0.0
     return Seats(
         found.boundary,
-        {item.mass: (item.x, item.y) for item in found.masses},
+        {item.mass: (item.x + (aside if item.deck == UPPER else 0.0), item.y) for item in found.masses},
         {item.bit: (item.x, item.y) for item in found.ports},
         True,
+        aside,
     )
 
 

@@ -65,7 +65,8 @@ def network_figure(network: Network, seats: Seats, inches: float) -> Figure:
     _port_names(axes, seats)
     _legend(axes, network)
     negative = sum(coupling.strength < 0 for coupling in network.couplings)
-    where = "where they are placed" if seats.placed else "not placed yet: spread for the eye"
+    placed = "where they are placed" + (", those of the upper deck half a row to the right" if seats.aside else "")
+    where = placed if seats.placed else "not placed yet: spread for the eye"
     axes.set_title(
         f"{network.design}: {len(network.masses)} masses ({where}), {len(network.couplings)} couplings, "
         f"{negative} negative",
